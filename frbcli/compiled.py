@@ -137,17 +137,59 @@ def compiled_for(kind: type, otherwise: object = None) -> Callable[[Kernel], Ker
     the functions that call it have `otherwise` in its place, and compute nothing."""
 
     def decorated(function: Kernel) -> Kernel:
-        kernel = compiled()(function)
-        has, has_not = _call_of_part(function, kernel), _composed(function, "part", otherwise)
+        has, has_not = _call_of_part(function, compiled()(function)), _composed(function, "part", otherwise)
+        return cast("Kernel", by_types(lambda *given: has if type_of(given[0]) is kind else None)(has_not))
+
+    return decorated
+
+
+def by_types(choose: Callable[..., Any], inline: bool = True, **options: Any) -> Callable[[Kernel], Kernel]:
+    """Decorates a function that kernels call, and Python may: the types of its arguments choose the function that is
+    meant, when the kernel is compiled.
+
+    choose: a function for these arguments, or for types that the compiler knows; None: the decorated one. inline: put
+    into the code of its callers as numba reads it; options: further ones of the compiler.
+    """
+
+    def decorated(function: Kernel) -> Kernel:
+        def chosen(*given: Any) -> Any:
+            return choose(*given) or function
 
         def asked(*given: Any) -> Any:
-            return kernel(*given) if isinstance(given[0], kind) else otherwise
+            return chosen(*given)(*given)
 
-        chosen = overload(asked, jit_options=AS_KERNELS, inline="always", strict=False)
-        chosen(lambda *given: has if getattr(given[0], "instance_class", None) is kind else has_not)
+        how: Any = {"inline": "always"} if inline else {}
+        overload(asked, jit_options=AS_KERNELS | options, strict=False, **how)(chosen)
         return cast("Kernel", update_wrapper(asked, function))
 
     return decorated
+
+
+def type_of(given: Any) -> type:
+    """The class of an argument, or of a type of tuples that the compiler knows."""
+    return cast("type", getattr(given, "instance_class", type(given)))
+
+
+def of_several(function: Callable[..., Any], inline: bool = False) -> Callable[..., Any]:
+    """A function (items, i, a, b, c, d, e) for kernels: `function` of item i of a tuple and five more arguments. What
+    the compiler knows of items of several types stands at fixed places of the tuple."""
+
+    def first(items, i, a, b, c, d, e):  # type: ignore[no-untyped-def]  # noqa: ARG001
+        return function(items[0], a, b, c, d, e)
+
+    def later(items, i, a, b, c, d, e):  # type: ignore[no-untyped-def]
+        return function(items[0], a, b, c, d, e) if i == 0 else one_of(items[1:], i - 1, a, b, c, d, e)
+
+    def choose(items: Any, *_: Any) -> Any:
+        if isinstance(items, tuple | types.UniTuple):
+            return None
+        return first if len(items) == 1 else later
+
+    @by_types(choose, inline)
+    def one_of(items: Any, i: int, a: float, b: float, c: float, d: float, e: float) -> Any:
+        return function(items[i], a, b, c, d, e)
+
+    return one_of
 
 
 def _part(function: Callable[..., Any], options: dict[str, Any]) -> Any:

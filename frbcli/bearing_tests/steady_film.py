@@ -22,7 +22,6 @@ from frbcli.film.cells.loads import CavitationFactor, FilmLoads, estimate, loads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import settled_force
-from frbcli.film.cells.tilted.balances import tilted_outflow
 from frbcli.film.cells.tilted.steady_force import Land, lands, summed
 from frbcli.film.gap import Section
 from frbcli.film.grid import Mesh
@@ -99,9 +98,7 @@ def steady_film(
 
 def leaving(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> float:
     """Outflow of a solution in m^3/s through the open ends of the whole bearing, of a land where the lands differ."""
-    if motion.tilts:
-        return tilted_outflow(film, motion, solution)
-    return outflow(film, motion.d, film.pressure(solution.state))
+    return outflow(film, motion, film.pressure(solution.state))
 
 
 def settled(

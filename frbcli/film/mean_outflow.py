@@ -15,6 +15,7 @@ from frbcli.film.cells.balance.side_flow import opens_far, side_flow
 from frbcli.film.cells.balance.states import PRESSURE, STATES
 from frbcli.film.cells.data import Records, VolumeFilms
 from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.tilted.motion import level
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.mean_fields import MeanFilm, fields_at
 from frbcli.film.parabola import hermite
@@ -23,12 +24,13 @@ from frbcli.film.rectangles.table import DEPTH_STEP
 
 
 class MeanEndFlow(NamedTuple):
-    """fields: of the pressure; films (1,), ring, cells: of the film, see VolumeFilms; far_open: see opens_far; apart:
-    rad between the angles of the openings that are tabulated; unit: m^2 of a flow of 1, over the clearance."""
+    """fields: of the pressure; films (1,), ring, places, cells: of the film, see VolumeFilms; far_open: see opens_far;
+    apart: rad between the angles of the openings that are tabulated; unit: m^2 of a flow of 1, over the clearance."""
 
     fields: MeanFilm
     films: Records
     ring: Array
+    places: Array
     cells: Array
     far_open: bool
     apart: float
@@ -40,7 +42,8 @@ def mean_end_flow(film: VolumeFilm, fields: MeanFilm, data: VolumeFilms, i: int)
     section = film.section
     apart = 2.0 * math.pi / (fields.table.shape[1] * max(len(section.holes), 1))
     unit = section.copies * section.radius * section.width
-    return MeanEndFlow(fields, data.films[i : i + 1], data.ring[i], data.cells[i], opens_far(film), apart, unit)
+    own = data.films[i : i + 1], data.ring[i], data.places[i], data.cells[i]
+    return MeanEndFlow(fields, *own, opens_far(film), apart, unit)
 
 
 @compiled(makes_arrays=True)
@@ -70,6 +73,7 @@ def mean_end_flows(flow: MeanEndFlow, motions: Array, omega: Array, scale: float
                     around = line_of[i - 1 if i > 0 else m - 1] + line_of[i + 1 if i + 1 < m else 0]
                     states[PRESSURE, i, line] = max((around + 4.0 * line_of[i]) / 6.0, fields.level)
             d_x, d_y = e * math.cos(j * flow.apart), e * math.sin(j * flow.apart)
-            flows[moment] += side_flow(own, flow.ring, flow.cells, states, d_x, d_y, flow.far_open)
+            at = level(d_x, d_y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+            flows[moment] += side_flow(own, flow.ring, flow.places, flow.cells, states, at, flow.far_open)
         flows[moment] *= flow.unit / (angles * scale)
     return flows

@@ -96,7 +96,7 @@ def run_advice(case: Case, end: RunEnd) -> tuple[str, ...]:
 def accuracy_advice(case: Case, run: Run) -> tuple[str, ...]:
     """A sentence on a run on cells whose journal came nearer to its shell, before a whirl, than the plan was made for,
     and which states an error above the target; may be none."""
-    if not form_of(case).chosen_by_target or case.accuracy.mesh is not None:
+    if not form_of(case).by_cells or case.accuracy.mesh is not None:
         return ()
     expected, stated, until = expected_eccentricity(case), run.error.get("eccentricity"), run.error.get("quiet_until_s")
     if expected is None or stated is None or until is None or stated <= case.accuracy.target:

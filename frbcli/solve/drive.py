@@ -23,10 +23,8 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from numba.extending import overload
-
 from frbcli.arrays import Array
-from frbcli.compiled import AS_KERNELS, compiled, compiled_for
+from frbcli.compiled import by_types, compiled, compiled_for, type_of
 from frbcli.solve.scratch import Scratch, rotation
 from frbcli.solve.stage.equations import CORRECTION, E_COS, E_GYROSCOPIC, E_SIN, FREE, LATE, U_0, Q, V
 from frbcli.solve.state import RUNNING, SLIP, STANDSTILL, STEP, TIME, RotorData
@@ -61,8 +59,8 @@ class DrivenRotor(NamedTuple):
 
 
 def is_driven(drive: Any) -> bool:
-    """Whether a type in a compiled loop belongs to a DrivenRotor."""
-    return getattr(drive, "instance_class", None) is DrivenRotor
+    """Whether a drive, or its type, is a DrivenRotor."""
+    return type_of(drive) is DrivenRotor
 
 
 @compiled_for(DrivenRotor, False)
@@ -128,32 +126,14 @@ def internal_torque(
     return still - omega * falls, falls
 
 
+def _own_speed(drive, v, times, speeds, angles, piece, t):  # type: ignore[no-untyped-def]
+    return v[drive.place]
+
+
+@by_types(lambda drive, *_: _own_speed if is_driven(drive) else None)
 def speed_now(drive: Any, v: Array, times: Array, speeds: Array, angles: Array, piece: int, t: float) -> float:
     """The speed of the rotor in rad/s at the start of a step at the time t in s, in a piece of its profile."""
-    raise NotImplementedError
-
-
-@overload(speed_now, jit_options=AS_KERNELS, inline="always")
-def _speed_now(drive, v, times, speeds, angles, piece, t):  # type: ignore[no-untyped-def]
-    if is_driven(drive):
-        return lambda drive, v, times, speeds, angles, piece, t: v[drive.place]
-    return lambda drive, v, times, speeds, angles, piece, t: rotation(times, speeds, angles, piece, t)[1]
-
-
-def stage_rotation(
-    drive: Any, times: Array, speeds: Array, angles: Array, piece: int, t: float, s: int, g: float, at: Array,
-    stage_a: Array,
-) -> tuple[float, float, float]:  # fmt: skip
-    """Acceleration, speed and angle of the rotor in stage s at the time t in s: from its profile, or as it would go on
-    by the acceleration of the stage before. at: as `predict` fills it."""
-    raise NotImplementedError
-
-
-@overload(stage_rotation, jit_options=AS_KERNELS, inline="always")
-def _stage_rotation(drive, times, speeds, angles, piece, t, s, g, at, stage_a):  # type: ignore[no-untyped-def]
-    if is_driven(drive):
-        return lambda drive, times, speeds, angles, piece, t, s, g, at, stage_a: _go_on(drive, s, g, at, stage_a)
-    return lambda drive, times, speeds, angles, piece, t, s, g, at, stage_a: rotation(times, speeds, angles, piece, t)
+    return rotation(times, speeds, angles, piece, t)[1]
 
 
 @compiled()
@@ -163,6 +143,20 @@ def _go_on(drive: DrivenRotor, s: int, g: float, at: Array, stage_a: Array) -> t
     now[ALPHA], now[OMEGA] = alpha, at[V, i] + g * alpha
     now[ANGLE] = at[Q, i] + g * now[OMEGA]
     return alpha, float(now[OMEGA]), float(now[ANGLE])
+
+
+def _own_rotation(drive, times, speeds, angles, piece, t, s, g, at, stage_a):  # type: ignore[no-untyped-def]
+    return _go_on(drive, s, g, at, stage_a)
+
+
+@by_types(lambda drive, *_: _own_rotation if is_driven(drive) else None)
+def stage_rotation(
+    drive: Any, times: Array, speeds: Array, angles: Array, piece: int, t: float, s: int, g: float, at: Array,
+    stage_a: Array,
+) -> tuple[float, float, float]:  # fmt: skip
+    """Acceleration, speed and angle of the rotor in stage s at the time t in s: from its profile, or as it would go on
+    by the acceleration of the stage before. at: as `predict` fills it."""
+    return rotation(times, speeds, angles, piece, t)
 
 
 @compiled_for(DrivenRotor)

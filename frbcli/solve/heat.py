@@ -12,10 +12,9 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba.extending import overload
 
 from frbcli.arrays import Array
-from frbcli.compiled import AS_KERNELS, compiled
+from frbcli.compiled import by_types, compiled, type_of
 from frbcli.solve.films.forces import drag_integral
 from frbcli.solve.films.kinds import CELLS, kind_of
 from frbcli.solve.films.warm import keep_oil, leaving, oil_share, set_scale
@@ -77,8 +76,8 @@ NO_HEAT = NoHeat(np.zeros((0, 0)))
 
 
 def have_heat(heat: Any) -> bool:
-    """Whether a type that the compiler knows belongs to a machine with heat."""
-    return getattr(heat, "instance_class", None) is LumpedHeat
+    """Whether the heat of a machine, or its type, is one that is computed."""
+    return type_of(heat) is LumpedHeat
 
 
 def columns_of(heat: Any) -> int:
@@ -103,66 +102,6 @@ class AcceptedStep(NamedTuple):
     contact_at: float
     contact_stiffness: float
     rough: Any
-
-
-def warm_stage(
-    heat: Any, films: Any, drag: Array, clearances: Array, wet: Array, bodies: Array, since: float
-) -> None:  # fmt: skip
-    """Viscosities and clearances <- values of a stage `since` s after the start of a step, in which rotor and rings
-    have the speeds `bodies`."""
-    raise NotImplementedError
-
-
-def carry_heat(
-    heat: Any, films: Any, work: Any, turning: Array, journal: Array, bodies: Array, wet: Array,
-    accepted: AcceptedStep, clearances: Array, drag: Array,
-) -> int:  # fmt: skip
-    """Temperatures, viscosities and clearances move on after an accepted step. Returns RUNNING or OVERHEATED. journal:
-    the rows of stage/equations.py in the last stage; bodies: its speeds of rotor and rings."""
-    raise NotImplementedError
-
-
-def write_heat(heat: Any, out_heat: Array, first: int, last: int, until_end: float, every: float, step: float) -> None:
-    """out_heat (rows, columns_of(heat)), rows from first up to last: temperatures and what the films do, linear
-    over the step that was taken. until_end: time in s from the last row to the end of the step; every: from row to
-    row."""
-    raise NotImplementedError
-
-
-@overload(warm_stage, jit_options=AS_KERNELS, inline="always")
-def _warm_stage(heat, films, drag, clearances, wet, bodies, since):  # type: ignore[no-untyped-def]
-    if not have_heat(heat):
-        return lambda heat, films, drag, clearances, wet, bodies, since: None
-    if kind_of(films) == CELLS:
-        return lambda heat, films, drag, clearances, wet, bodies, since: _warm(
-            heat, films, drag, clearances, wet, bodies, since
-        )
-    return lambda heat, films, drag, clearances, wet, bodies, since: _warm(
-        heat, 0, drag, clearances, 0, bodies, since
-    )
-
-
-@overload(carry_heat, jit_options=AS_KERNELS, inline="always")
-def _carry_heat(heat, films, work, turning, journal, bodies, wet, accepted, clearances, drag):  # type: ignore[no-untyped-def]
-    if not have_heat(heat):
-        return lambda heat, films, work, turning, journal, bodies, wet, accepted, clearances, drag: RUNNING
-    if kind_of(films) == CELLS:
-        return lambda heat, films, work, turning, journal, bodies, wet, accepted, clearances, drag: _carry(
-            heat, films, work, turning, journal, bodies, wet, accepted, clearances, drag
-        )
-    # Only what tabulated films need is handed on: a call with the arrays of all films takes as long as their heat does.
-    return lambda heat, films, work, turning, journal, bodies, wet, accepted, clearances, drag: _carry(
-        heat, 0, 0, turning, journal, bodies, 0, accepted, clearances, drag
-    )
-
-
-@overload(write_heat, jit_options=AS_KERNELS, inline="always")
-def _write_heat(heat, out_heat, first, last, until_end, every, step):  # type: ignore[no-untyped-def]
-    if not have_heat(heat):
-        return lambda heat, out_heat, first, last, until_end, every, step: None
-    return lambda heat, out_heat, first, last, until_end, every, step: _write(
-        heat.model.numbers, heat.state, heat.last, heat.now, out_heat, first, last, until_end, every, step
-    )
 
 
 @compiled()
@@ -273,3 +212,55 @@ def _write(
                 out_heat[row, COLUMNS * i + 2 + column] = now[at, i] + back * (now[before, i] - now[at, i])
     for f in range(count):
         now[CLEARANCE_BEFORE, f] = now[CLEARANCE, f]
+
+
+def _warm_films(heat: Any, films: Any, *_: Any) -> Any:
+    if not have_heat(heat):
+        return None
+    if kind_of(films) == CELLS:
+        return lambda heat, films, drag, clearances, wet, bodies, since: _warm(
+            heat, films, drag, clearances, wet, bodies, since
+        )
+    return lambda heat, films, drag, clearances, wet, bodies, since: _warm(heat, 0, drag, clearances, 0, bodies, since)
+
+
+@by_types(_warm_films)
+def warm_stage(
+    heat: Any, films: Any, drag: Array, clearances: Array, wet: Array, bodies: Array, since: float
+) -> None:  # fmt: skip
+    """Viscosities and clearances <- values of a stage `since` s after the start of a step, in which rotor and rings
+    have the speeds `bodies`."""
+
+
+def _carry_films(heat: Any, films: Any, *_: Any) -> Any:
+    if not have_heat(heat):
+        return None
+    if kind_of(films) == CELLS:
+        return lambda heat, films, work, turning, journal, bodies, wet, accepted, clearances, drag: _carry(
+            heat, films, work, turning, journal, bodies, wet, accepted, clearances, drag
+        )
+    # Only what tabulated films need is handed on: a call with the arrays of all films takes as long as their heat does.
+    return lambda heat, films, work, turning, journal, bodies, wet, accepted, clearances, drag: _carry(
+        heat, 0, 0, turning, journal, bodies, 0, accepted, clearances, drag
+    )
+
+
+@by_types(_carry_films)
+def carry_heat(
+    heat: Any, films: Any, work: Any, turning: Array, journal: Array, bodies: Array, wet: Array,
+    accepted: AcceptedStep, clearances: Array, drag: Array,
+) -> int:  # fmt: skip
+    """Temperatures, viscosities and clearances move on after an accepted step. Returns RUNNING or OVERHEATED. journal:
+    the rows of stage/equations.py in the last stage; bodies: its speeds of rotor and rings."""
+    return RUNNING
+
+
+def _write_numbers(heat, out_heat, first, last, until_end, every, step):  # type: ignore[no-untyped-def]
+    _write(heat.model.numbers, heat.state, heat.last, heat.now, out_heat, first, last, until_end, every, step)
+
+
+@by_types(lambda heat, *_: _write_numbers if have_heat(heat) else None)
+def write_heat(heat: Any, out_heat: Array, first: int, last: int, until_end: float, every: float, step: float) -> None:
+    """out_heat (rows, columns_of(heat)), rows from first up to last: temperatures and what the films do, linear
+    over the step that was taken. until_end: time in s from the last row to the end of the step; every: from row to
+    row."""

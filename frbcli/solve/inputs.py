@@ -13,10 +13,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from numba.extending import overload
-
 from frbcli.arrays import Array
-from frbcli.compiled import AS_KERNELS, Indices, compiled, compiled_for
+from frbcli.compiled import Indices, by_types, compiled, compiled_for, type_of
 from frbcli.film.cells.cavity_edge import CellEnds
 from frbcli.film.cells.data import GIVEN_PRESSURE, VolumeFilms
 from frbcli.solve.films.kinds import by_kind
@@ -48,24 +46,6 @@ class Inputs(NamedTuple):
     ends: Any
 
 
-def supply_warm(inputs: Any, films: Any, heat: Any) -> None:
-    """Films <- the pressures of the step at the viscosities of a stage."""
-    raise NotImplementedError
-
-
-def supplied(films: Any, ends: Any, f: int, share: float, scale: float) -> None:
-    """Finite-volume films <- a share of the gauge pressures of film f; tabulated films are asked for scaled
-    velocities."""
-    raise NotImplementedError
-
-
-@overload(supply_warm, jit_options=AS_KERNELS, inline="always")
-def _supply_warm(inputs, films, heat):  # type: ignore[no-untyped-def]
-    if getattr(inputs, "instance_class", None) is not Inputs or not have_heat(heat):
-        return lambda inputs, films, heat: None
-    return lambda inputs, films, heat: _supply(inputs, films, heat)
-
-
 @compiled()
 def value_at(inputs: Inputs, table: int, t: float) -> float:
     """The value of a table at a time in s, linear between its rows."""
@@ -75,47 +55,17 @@ def value_at(inputs: Inputs, table: int, t: float) -> float:
     return float(before + since * (after - before))
 
 
+def _give(inputs, heat, t):  # type: ignore[no-untyped-def]
+    for i in range(inputs.supplies.shape[0]):
+        heat.model.films[SUPPLY, inputs.supplies[i, 1]] = value_at(inputs, inputs.supplies[i, 0], t)
+    begin = heat.state.shape[0] - heat.gain.shape[0]
+    for i in range(inputs.walls.shape[0]):
+        heat.state[begin + inputs.walls[i, 1]] = value_at(inputs, inputs.walls[i, 0], t)
+
+
+@by_types(lambda inputs, heat, t: _give if have_heat(heat) else None)
 def give_temperatures(inputs: Inputs, heat: LumpedHeat | NoHeat, t: float) -> None:
     """The heat <- temperatures of supplies and walls at the time t in s."""
-    raise NotImplementedError
-
-
-@overload(give_temperatures, jit_options=AS_KERNELS, inline="always")
-def _give_temperatures(inputs, heat, t):  # type: ignore[no-untyped-def]
-    if not have_heat(heat):
-        return lambda inputs, heat, t: None
-
-    def give(inputs, heat, t):  # type: ignore[no-untyped-def]
-        for i in range(inputs.supplies.shape[0]):
-            heat.model.films[SUPPLY, inputs.supplies[i, 1]] = value_at(inputs, inputs.supplies[i, 0], t)
-        begin = heat.state.shape[0] - heat.gain.shape[0]
-        for i in range(inputs.walls.shape[0]):
-            heat.state[begin + inputs.walls[i, 1]] = value_at(inputs, inputs.walls[i, 0], t)
-
-    return give
-
-
-@compiled_for(Inputs)
-def set_inputs(inputs: Inputs, films: Any, heat: Any, t: float, step: float) -> None:
-    """Films and heat <- the inputs of a step from the time t in s on."""
-    give_temperatures(inputs, heat, t + step)
-    for i in range(inputs.pressures.shape[0]):
-        f = inputs.pressures[i, 1]
-        gauge = value_at(inputs, inputs.pressures[i, 0], t + 0.5 * step) - inputs.ambient
-        inputs.shares[f] = max(gauge / inputs.largest[f], inputs.least)
-    _supply(inputs, films, heat)
-
-
-@compiled()
-def _supply(inputs: Inputs, films: Any, heat: Any) -> None:
-    now = heat.now
-    for f in range(inputs.shares.shape[0] if inputs.pressures.shape[0] > 0 else 0):
-        share, scale = inputs.shares[f], 1.0
-        if now.shape[0] > 0:
-            scale = now[SCALE, f]
-            now[SHARE_OF_SUPPLY, f] = share
-        inputs.scales[f] = scale / share
-        supplied(films, inputs.ends, f, share, scale)
 
 
 @compiled()
@@ -131,9 +81,41 @@ def _supply_cells(films: VolumeFilms, ends: CellEnds, f: int, share: float, scal
             films.channels[k].groove_pressure = ends.groove_pressure[k] * share
 
 
-by_kind(
-    supplied,
-    inline=True,
-    others=lambda films, ends, f, share, scale: None,
-    cells=lambda films, ends, f, share, scale: _supply_cells(films, ends, f, share, scale),
+@by_kind(
+    inline=True, cells=lambda films, ends, f, share, scale: _supply_cells(films, ends, f, share, scale)
 )
+def supplied(films: Any, ends: Any, f: int, share: float, scale: float) -> None:
+    """Finite-volume films <- a share of the gauge pressures of film f; tabulated films are asked for scaled
+    velocities."""
+
+
+@compiled()
+def _supply(inputs: Inputs, films: Any, heat: Any) -> None:
+    now = heat.now
+    for f in range(inputs.shares.shape[0] if inputs.pressures.shape[0] > 0 else 0):
+        share, scale = inputs.shares[f], 1.0
+        if now.shape[0] > 0:
+            scale = now[SCALE, f]
+            now[SHARE_OF_SUPPLY, f] = share
+        inputs.scales[f] = scale / share
+        supplied(films, inputs.ends, f, share, scale)
+
+
+@compiled_for(Inputs)
+def set_inputs(inputs: Inputs, films: Any, heat: Any, t: float, step: float) -> None:
+    """Films and heat <- the inputs of a step from the time t in s on."""
+    give_temperatures(inputs, heat, t + step)
+    for i in range(inputs.pressures.shape[0]):
+        f = inputs.pressures[i, 1]
+        gauge = value_at(inputs, inputs.pressures[i, 0], t + 0.5 * step) - inputs.ambient
+        inputs.shares[f] = max(gauge / inputs.largest[f], inputs.least)
+    _supply(inputs, films, heat)
+
+
+def _supply_at(inputs, films, heat):  # type: ignore[no-untyped-def]
+    _supply(inputs, films, heat)
+
+
+@by_types(lambda inputs, films, heat: _supply_at if type_of(inputs) is Inputs and have_heat(heat) else None)
+def supply_warm(inputs: Any, films: Any, heat: Any) -> None:
+    """Films <- the pressures of the step at the viscosities of a stage."""

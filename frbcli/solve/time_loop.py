@@ -10,10 +10,9 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba.extending import overload
 
 from frbcli.arrays import Array
-from frbcli.compiled import AS_KERNELS, compiled, folder_of
+from frbcli.compiled import by_types, compiled, folder_of
 from frbcli.solve.drive import end_of_turning, overshoots, stage_rotation, turn_on, turns_freely
 from frbcli.solve.films.forces import left_over, solved
 from frbcli.solve.films.steps import accept_films, begin_stage, film_error, make_work, most_iterations, write_oil
@@ -153,21 +152,19 @@ def advance(
     return int(status), int(rows)
 
 
+def _at_temperatures(space, rotor, films, wet, bodies, since):  # type: ignore[no-untyped-def]
+    warm_stage(space.heat, films, rotor.drag, rotor.clearances, wet, bodies, since)
+    supply_warm(rotor.inputs, films, space.heat)
+
+
+def _if_heat(space: Any, *_: Any) -> Any:
+    heat = space.heat if isinstance(space, Space) else space.types[space.fields.index("heat")]
+    return _at_temperatures if have_heat(heat) else None  # to take it out of the tuple costs a tenth of a quick stage
+
+
+@by_types(_if_heat)
 def _warm(space: Space, rotor: RotorData, films: Any, wet: Array, bodies: Array, since: float) -> None:
     """The films at the temperatures of a stage, see warm_stage."""
-    raise NotImplementedError
-
-
-@overload(_warm, jit_options=AS_KERNELS, inline="always")
-def _warm_with_heat(space, rotor, films, wet, bodies, since):  # type: ignore[no-untyped-def]
-    if not have_heat(space.types[space.fields.index("heat")]):  # to take it out costs a tenth of a quick stage
-        return lambda space, rotor, films, wet, bodies, since: None
-
-    def warm(space, rotor, films, wet, bodies, since):  # type: ignore[no-untyped-def]
-        warm_stage(space.heat, films, rotor.drag, rotor.clearances, wet, bodies, since)
-        supply_warm(rotor.inputs, films, space.heat)
-
-    return warm
 
 
 @compiled(inline=True, internal=True)

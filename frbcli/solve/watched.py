@@ -14,6 +14,7 @@ from frbcli.compiled import compiled
 from frbcli.film.cells.balance.balances import FILLING
 from frbcli.film.cells.balance.side_flow import side_flow
 from frbcli.film.cells.data import PASSED
+from frbcli.film.cells.tilted.motion import level
 from frbcli.solve.films.forces import drag_integral
 from frbcli.solve.films.kinds import by_kind
 from frbcli.solve.state import OUTPUTS, RUNNING, TIME, Control, LoopOutput, RotorData, State
@@ -44,30 +45,23 @@ def advance_watched(
     return int(status), int(rows)
 
 
-def oil_leaving(films: Any, work: Any, flows: Array, f: int, far_open: Array) -> float:
-    """Oil that leaves film f now: of cells over its scale, through the open ends; 0 of a film whose motion determines
-    it."""
-    raise NotImplementedError
-
-
-def filling(films: Any, flows: Array, f: int) -> float:
-    """The filling of the openings of film f, below 1 only with a flow-limited supply."""
-    raise NotImplementedError
-
-
-by_kind(
-    filling,
-    others=lambda films, flows, f: 1.0,
-    cells=lambda films, flows, f: flows[PASSED, f, FILLING],
-)
-by_kind(
-    oil_leaving,
-    others=lambda films, work, flows, f, far_open: 0.0,
+@by_kind(
     cells=lambda films, work, flows, f, far_open: side_flow(
-        films.films[f], films.ring[f], films.cells[f], work.states[f], work.grids[f].x, work.grids[f].y,
+        films.films[f], films.ring[f], films.places[f], films.cells[f], work.states[f],
+        level(work.grids[f].x, work.grids[f].y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         far_open[f] != 0.0,
     ),
 )  # fmt: skip
+def oil_leaving(films: Any, work: Any, flows: Array, f: int, far_open: Array) -> float:
+    """Oil that leaves film f now: of cells over its scale, through the open ends; 0 of a film whose motion determines
+    it."""
+    return 0.0
+
+
+@by_kind(cells=lambda films, flows, f: flows[PASSED, f, FILLING])
+def filling(films: Any, flows: Array, f: int) -> float:
+    """The filling of the openings of film f, below 1 only with a flow-limited supply."""
+    return 1.0
 
 
 @compiled()

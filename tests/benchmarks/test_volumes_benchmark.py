@@ -30,6 +30,7 @@ from frbcli.film.cells.block_cyclic import ENTRIES
 from frbcli.film.cells.data import COS, GAP, SIDES, SIN, volume_films
 from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure
 from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.cells.tilted.motion import level
 
 pytestmark = [pytest.mark.nightly, pytest.mark.timing]
 
@@ -65,7 +66,7 @@ def circle(  # type: ignore[no-untyped-def]
         past[:] = content / dt
         for _ in range(MOST_ITERATIONS):
             film_newton(
-                films, 0, w, GridMotion(d_x, d_y, omega, 0.0, 0.0, 0.0, dt, 1.0 / dt), past,
+                films, 0, w, level(d_x, d_y, omega, 0.0, 0.0, 0.0, dt, 1.0 / dt), past,
                 states, stencil, blocks, fields, flows,
             )  # fmt: skip
             iterations += 1

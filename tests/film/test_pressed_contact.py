@@ -25,7 +25,7 @@ from frbcli.runs.march import March
 from frbcli.scene.machine.system import Segment, System, make_system
 from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
-from frbcli.solve.films.cells import EMPTY, OPEN, cell_response, move_cells
+from frbcli.solve.films.cells import EMPTY, OPEN, cell_response, move_even
 from frbcli.solve.films.steps import make_work
 from frbcli.solve.stage.contact import push_back
 from frbcli.solve.stage.equations import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, U_0, X_0, FilmMotion, U
@@ -132,10 +132,7 @@ def pressed(kind: str, touches: float, omega: float, g: float, stiffness: float 
             forces(data, work, clearances, contact_at(touches, stiffness), g, 1, iteration, rows)
             if not cells or work.grids[0].balance != OPEN:
                 return rows
-            move_cells(
-                data.ring[0], data.cells[0], work.w[0], work.states[0], work.fields[0], work.grids[0], 0.0, 0.0, g,
-                np.zeros(0),
-            )  # fmt: skip
+            move_even(data, work, 0, 0.0, 0.0, g)
         raise AssertionError(f"{kind} did not settle at {d}")
 
     return ask
@@ -254,8 +251,7 @@ def settle(system: System, felt: Array, w: Array, past: Array, g: float, leaps: 
             return iteration, force, states[FRACTION]
         if leaps:
             grid.law[EMPTY] = -math.inf
-        given = data.ring[0], data.cells[0], work.w[0], work.states[0]  # type: ignore[attr-defined]
-        move_cells(*given, work.fields[0], grid, 0.0, 0.0, g, np.zeros(0))
+        move_even(data, work, 0, 0.0, 0.0, g)  # type: ignore[arg-type]
     return iteration + 1, force, states[FRACTION]
 
 

@@ -234,7 +234,7 @@ def _about_error(case: Case, plan: Plan, error: ExpectedError, tried: TriedError
         parts = f"of the eccentricities {until}, from short runs on these and on {around} x {along} cells"
         return Decision("expected error", f"{tried.error:.2g}", parts)
     parts = "of the eccentricities before a whirl grows" if case.films else "of the displacements, over the length"
-    if plan.form.chosen_by_target and rings(case):
+    if plan.form.by_cells and rings(case):
         parts += f"; {BY_CELLS_WITH_RINGS}"
     parts += remark
     if error.film_force is not None:

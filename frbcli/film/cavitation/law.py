@@ -65,6 +65,7 @@ class Key:
 Cell = tuple[float, float, float, float, float, float]
 CellWithGas = tuple[float, float, float, float, float, float, float, float]
 Numbers = tuple[float, ...]
+ABOVE_KINK = 1e-300  # of an unknown: a negligible pressure, but a full cell
 FRONTS = 1.5  # fronts between cells make the order 1 to 2: the middle of it
 
 
@@ -123,9 +124,9 @@ class Law:
         """The compiled form: pressure, oil fraction, source and their slopes by w of one cell, see CellState.
 
         parameters: the fields of the law, in their order. Numba compiles it with every function that it calls: plain
-        Python on numbers, with the functions of `math`; all six results are floats.
+        Python on numbers, with the functions of `math`; all six results are floats. A law without it is none.
         """
-        raise NotImplementedError
+        return math.nan, math.nan, math.nan, math.nan, math.nan, math.nan
 
     @staticmethod
     def follow(parameters: Numbers, eccentricity: float, speed: float, whirl: float) -> Numbers:
@@ -149,44 +150,48 @@ class Law:
     def cells_with_gas(self, w: Array, scales: Scales, carried: Array, turnover: Array) -> CellState:
         """The plain form of a law that carries gas. carried, turnover: arrays of the shape of w, the two
         parameters that `cell` takes behind its own."""
-        raise NotImplementedError
+        return self.cells(w, scales)
 
     @property
     def supplied_gas(self) -> float:
-        """Free gas over the oil that is supplied, of a law that carries gas."""
-        raise NotImplementedError
+        """Free gas over the oil that is supplied."""
+        return 0.0
 
     @property
     def gas_content(self) -> float:
-        """Free and dissolved gas over the oil, of a law that carries gas."""
-        raise NotImplementedError
+        """Free and dissolved gas over the oil."""
+        return 0.0
 
     def standing(self, scales: Scales) -> float:
-        """w of oil at the ambient pressure whose gas is in equilibrium, of a law that carries gas."""
-        raise NotImplementedError
+        """w of a full film at the ambient pressure, or of oil whose gas is in equilibrium there.
+
+        Where that is p_cav, a full film lies on the kink of the law, on its full side: from there one step of Newton's
+        method finds the pressures of the whole film, from the other side only of one more column of cells."""
+        return max(ABOVE_KINK, -scales.cavitation / scales.reference)
 
     def free_gas(self, state: CellState, scales: Scales) -> Array:
-        """Free gas of cells over their oil, of a law that carries gas."""
-        raise NotImplementedError
+        """Free gas of cells over their oil."""
+        return np.zeros_like(state.pressure)
 
     def exchanged(self, pressure: Array, carried: Array, scales: Scales) -> tuple[Array, Array]:
         """Free gas in equilibrium at scaled gauge pressures, and the time constant in s with which the gas that comes
-        into a cell, `carried`, tends to it; of a law that carries gas."""
-        raise NotImplementedError
+        into a cell, `carried`, tends to it."""
+        return np.zeros_like(pressure), np.zeros_like(pressure)
 
     def edged(self, state: CellState, w: Array, scales: Scales, rate: Array, through: Array) -> CellState:
-        """The cells `state` with the unknown w, with the edge of the cavity within them. rate: at which the gap opens,
-        1/s; through: scaled flow to the next cell over the area, per pressure; see film/cells/cavity_edge.py."""
-        raise NotImplementedError
+        """The cells `state` with the unknown w, with the edge of the cavity within them, of a law with `edges`. rate:
+        at which the gap opens, 1/s; through: scaled flow to the next cell over the area, per pressure; see
+        film/cells/cavity_edge.py."""
+        return state
 
     def edge_source(self, pressure: Array, scales: Scales, rate: Array, through: Array) -> Array:
         """Sources for scaled gauge pressures of cells next to the edge of the cavity, see `edged`."""
-        raise NotImplementedError
+        return np.zeros_like(pressure)
 
-    def curve(self, ratio: Array) -> Array:
-        """theta at p / p_cav (n,), of a law that keeps oil and whose pressures are scaled with p_cav. Raises
-        NotImplementedError where theta does not follow from the pressure."""
-        raise NotImplementedError
+    def curve(self, ratio: Array) -> Array | None:
+        """theta at p / p_cav (n,), of a law whose pressures are scaled with p_cav; None where theta does not follow
+        from the pressure."""
+        return None
 
     @classmethod
     def legend(cls, given: Any) -> str:

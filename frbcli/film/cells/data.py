@@ -26,7 +26,9 @@ TIGHTLY = 1e-4  # settled, where nothing is said of it
 
 CLOSED, GIVEN, FREE, FED = range(4)
 ENDS = {"symmetry": CLOSED, "oil-bath": GIVEN, "groove": FED, "free-to-air": FREE}
-BY_ITSELF, BY_X, BY_Y, SIDES = range(4)  # right-hand sides of the balances
+# Right-hand sides of the balances: their own, and by the velocity of the journal, or by those at both ends
+BY_ITSELF, BY_X, BY_Y, SIDES = range(4)
+BY_ENDS, ALL_SIDES = 1, 5
 # Of forces: how they clip the pressure at p_cav.
 NO_CLIP, BY_CELLS, BETWEEN_MIDDLES = range(3)
 
@@ -41,8 +43,9 @@ SCALES = record(("reference", "f8"), ("cavitation", "f8"), ("ambient", "f8"))  #
 # pressure in a groove; 1 over the distance from the last unknown, with the seal, over which oil diffuses.
 END = record(("kind", "i8"), ("rise", "f8"), ("bend", "f8"), ("pressure", "f8"), ("reach", "f8"))
 # One film. follow_at, cells_at: addresses of its compiled law; solver_at: of ring_solver; remembers: whether it is
-# mass-conserving; carries_gas: whether its oil carries free gas; bored: whether flows around take the gaps of both
-# cells, as next to bores; centrifugal: by which given pressures fall with the square of the grid's speed, in s;
+# mass-conserving; carries_gas: whether its oil carries free gas; bored, edges: whether flows around take
+# the gaps of both cells, as next to bores, or those at edges of openings;
+# centrifugal: by which given pressures fall with the square of the grid's speed, in s;
 # supplied_gas, gas_content: free gas of the oil that is supplied, and all gas of the oil, of a law that carries any;
 # settled: share of its pace that its balances may be off by in the mean; roughness, over the clearance, of surfaces
 # that it flows between, and shear: see Section; diffuses, length, spread: whether it has an artificial diffusion, its
@@ -66,6 +69,7 @@ FILM = record(
     ("remembers", "?"),
     ("carries_gas", "?"),
     ("bored", "?"),
+    ("edges", "?"),
     ("roughness", "f8"),
     ("shear", "f8"),
     ("diffuses", "?"),
@@ -105,6 +109,9 @@ SIN, COS, GAP, FACE_SIN, FACE_COS, FACE_GAP, LENGTH, PUSH_X, PUSH_Y, BATHED, RIN
     EDGE_GAP,
     CELL_LAYERS,
 ) = range(16)
+# Where the middles of the cells and their edges lie along the axis, 0 at the near end and 1 at the far end: of their
+# section, or of the bearing of a journal that tilts; and the sizes of the cells over the width of the section.
+MIDDLES, EDGES, WIDTHS, PLACES = range(4)
 # A feed hole: its film and which one of that film it is; what a flow of 1 in the film's units is in m^3/s, and a
 # pressure of 1 in Pa; the sum of its cells' conductances.
 FEED_HOLES = record(
@@ -119,14 +126,14 @@ CHANNEL = record(
 
 
 class VolumeFilms(NamedTuple):
-    """Films of equal numbers of cells m x k. films: (films,) records FILM; ring: (films, RING_ROWS, m); width:
-    (films, 1, k) sizes of the cells along the axis; cells: (films, CELL_LAYERS, m, k). Coupled channels have records
+    """Films of equal numbers of cells m x k. films: (films,) records FILM; ring: (films, RING_ROWS, m); places:
+    (films, PLACES, k + 1) of the cells along the axis; cells: (films, CELL_LAYERS, m, k). Coupled channels have records
     CHANNEL, channels (channels,), and FEED_HOLES, feed_holes (holes,), whose cells are feed_hole_cells (holes, n, 2),
     filled up with -1."""
 
     films: Records
     ring: Array
-    width: Array
+    places: Array
     cells: Array
     channels: Records
     feed_holes: Records
@@ -143,7 +150,7 @@ def volume_films(
     data = VolumeFilms(
         np.zeros(len(films), FILM),
         np.zeros((len(films), RING_ROWS, m)),
-        np.zeros((len(films), 1, k)),
+        np.zeros((len(films), PLACES, k + 1)),
         np.zeros((len(films), CELL_LAYERS, m, k)),
         np.zeros(0, CHANNEL),
         np.zeros(0, FEED_HOLES),
@@ -151,7 +158,8 @@ def volume_films(
     )
     for index, film in enumerate(films):
         _describe(film, data.films[index])
-        data.ring[index], data.width[index], data.cells[index] = _geometry(film.section, film.grid)
+        data.ring[index], data.places[index], data.cells[index] = _geometry(film.section, film.grid)
+        data.films[index].edges = data.cells[index, EDGE].any()
         data.films[index].centrifugal = centrifugal[index] if centrifugal else 0.0
         data.films[index].settled = settled
     return data
@@ -171,9 +179,7 @@ def _describe(film: VolumeFilm, own: np.record) -> None:
     own.solver_at = ring_solver(film.grid.shape[1])
     own.clips = (BETWEEN_MIDDLES if film.clips_between else BY_CELLS) if law.clips else NO_CLIP
     own.remembers, own.bored = law.keeps_oil, film.grid.has_bores
-    own.carries_gas = law.carries_gas
-    if law.carries_gas:
-        own.supplied_gas, own.gas_content = law.supplied_gas, law.gas_content
+    own.carries_gas, own.supplied_gas, own.gas_content = law.carries_gas, law.supplied_gas, law.gas_content
     own.roughness, own.shear = section.flow_roughness / section.clearance, section.shear
     own.diffuses, own.length, own.spread = section.diffusion is not None, *diffusing(section, film.grid)
     own.parameters[:] = given_parameters(law)
@@ -183,10 +189,10 @@ def _describe(film: VolumeFilm, own: np.record) -> None:
 
 @lru_cache(maxsize=FEW)
 def _geometry(section: Section, grid: VolumeGrid) -> tuple[Array, Array, Array]:
-    """ring (RING_ROWS, m), width (1, k) and cells (CELL_LAYERS, m, k) of a film, not to be written to. The arrays of a
-    few films are cached: a film is solved often, at each eccentricity with its own law."""
+    """ring (RING_ROWS, m), places (PLACES, k + 1) and cells (CELL_LAYERS, m, k) of a film, not to be written to. The
+    arrays of a few films are cached: a film is solved often, at each eccentricity with its own law."""
     m, k = grid.shape
-    ring, width, cells = np.zeros((RING_ROWS, m)), np.zeros((1, k)), np.zeros((CELL_LAYERS, m, k))
+    ring, cells, width = np.zeros((RING_ROWS, m)), np.zeros((CELL_LAYERS, m, k)), np.diff(grid.z)
     face, centred = grid.phi[1:], (0.0, 0.0)
     ring[SIN], ring[COS], ring[GAP] = (
         np.sin(grid.centre),
@@ -197,11 +203,10 @@ def _geometry(section: Section, grid: VolumeGrid) -> tuple[Array, Array, Array]:
     ring[LENGTH] = np.diff(grid.phi)
     ring[PUSH_X], ring[PUSH_Y] = -np.diff(np.cos(grid.phi)), -np.diff(np.sin(grid.phi))
     ring[BATHED] = bathed(section, grid.phi)
-    width[0] = np.diff(grid.z)
     cells[AREA], cells[SHARE], cells[EXCESS] = grid.area, grid.share, grid.excess
     cells[SHEARED] = (1.0 - grid.cover) * grid.size
     cells[LOAD] = force_weights(section, grid)
-    around = np.where(grid.around > 0.0, width[0] / np.maximum(grid.around, NO_DISTANCE), 0.0)
+    around = np.where(grid.around > 0.0, width / np.maximum(grid.around, NO_DISTANCE), 0.0)
     edge = grid.at != grid.phi[1:, None]
     cells[AROUND], cells[EDGE] = np.where(edge, 0.0, around), np.where(edge, around, 0.0)
     cells[EDGE_SIN], cells[EDGE_COS] = np.sin(grid.at), np.cos(grid.at)
@@ -209,7 +214,15 @@ def _geometry(section: Section, grid: VolumeGrid) -> tuple[Array, Array, Array]:
     open_along = np.where(grid.along > 0.0, ring[LENGTH][:, None] / np.maximum(grid.along, NO_DISTANCE), 0.0)
     cells[ALONG, :, :-1] = section.aspect * open_along
     cells[GIVEN_PRESSURE], cells[UNKNOWN] = grid.fixed_pressure, np.where(grid.fixed, 0.0, 1.0)
-    return ring, width, cells
+    return ring, places_along(grid.height, grid.z, width), cells
+
+
+def places_along(middles: Array, edges: Array, widths: Array) -> Array:
+    """(PLACES, k + 1) of the middles (k,), edges (k + 1,) and widths (k,) of cells along the axis."""
+    k = len(middles)
+    places = np.zeros((PLACES, k + 1))
+    places[MIDDLES, :k], places[EDGES], places[WIDTHS, :k] = middles, edges, widths
+    return places
 
 
 # Layers of the films' state: unknown w now and at the start of the step before, oil H theta, its rate; where the oil of

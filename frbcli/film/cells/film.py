@@ -18,7 +18,6 @@ from frbcli.film.gap import Section, gap_height
 if TYPE_CHECKING:
     from frbcli.film.cells.gas.balance import Carried, FreeGas
 
-ABOVE_KINK = 1e-300  # of an unknown: a negligible pressure, but a full cell
 HALVINGS = 60  # of the interval in which the unknown of a cell with a given oil fraction lies
 
 __all__ = [
@@ -99,14 +98,8 @@ class VolumeFilm:
         )
 
     def full(self) -> Array:
-        """(m, k) unknown of a full film at the ambient pressure.
-
-        Where that is p_cav, it lies on the kink of the law, on its full side: from there one step of Newton's method
-        finds the pressures of the whole film, from the other side only of one more column of cells. Gas in the oil is
-        in equilibrium. """
-        if self.law.carries_gas:
-            return np.full(self.grid.shape, self.law.standing(self.scales))
-        return np.full(self.grid.shape, max(ABOVE_KINK, -self.scales.cavitation / self.scales.reference))
+        """(m, k) unknown of a full film at the ambient pressure, gas in the oil being in equilibrium."""
+        return np.full(self.grid.shape, self.law.standing(self.scales))
 
     @property
     def weights(self) -> Array:
@@ -141,8 +134,8 @@ class VolumeFilm:
 
     @property
     def clips_between(self) -> bool:
-        """Whether forces clip between the middles of cells, see clipped.py: not next to a circumferential groove, whose
-        cavities end within the width, so that their edges cross the rows of cells at a slant."""
+        """Whether forces clip between the middles of cells, see plain_clipped.py: not next to a circumferential groove,
+        whose cavities end within the width, so that their edges cross the rows of cells at a slant."""
         return self.law.clips and self.section.far != "groove"
 
     def mean_pressure(self, state: CellState) -> Array:

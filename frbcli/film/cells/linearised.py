@@ -34,25 +34,19 @@ import numpy as np
 
 from frbcli.arrays import Array, Complex
 from frbcli.film.cavitation.compiled import given_parameters
-from frbcli.film.cells.balance.balances import FLOWS, SUPPLY_NET, GridMotion, balances, without_ends
+from frbcli.film.cells.balance.balances import FLOWS, SUPPLY_NET, balances, without_ends
 from frbcli.film.cells.balance.boundaries import ALL
-from frbcli.film.cells.balance.states import (
-    BEFORE_UPSTREAM,
-    FRACTION_SLOPE,
-    PRESSURE,
-    PRESSURE_SLOPE,
-    STATES,
-    cell_states,
-)
+from frbcli.film.cells.balance.states import PRESSURE, cell_states
 from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
-from frbcli.film.cells.data import AREA, BY_ITSELF, COS, GAP, LOAD, PUSH_X, PUSH_Y, SIDES, SIN, UNKNOWN
+from frbcli.film.cells.data import BY_ITSELF, SIDES, UNKNOWN
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.linear import linear_states
-from frbcli.film.cells.loads import CavitationFactor, shear_weights
+from frbcli.film.cells.loads import CavitationFactor, pushed, pushing, shear_weights
 from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.steady_force import film_at, oil_slopes
+from frbcli.film.cells.steady_force import film_at, oil_slopes, settled_states
+from frbcli.film.cells.tilted.motion import seen_by_grid
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_matrix
@@ -123,13 +117,38 @@ def linear_film(
     at = film_at(film, math.hypot(x, y), total)
     motion, solver = Motion((x, y), (0.0, 0.0), total), FilmSolver(at)
     solution = solver.steady(motion, start, upwind=True)
-    weights = shear_weights(at, motion, factor)
-    if at.law.carries_gas:
-        terms = linear_states(at, motion, solution, weights)
-        moved = terms.by_place / clearance, terms.by_rate / clearance, terms.by_total
-        return LinearFilm(terms.flow, terms.storage, *moved, terms.push, terms.sheared, solution.field, ordered=True)
-    settled = _SettledCells(solver, motion, solution, weights)
-    return settled.at_pressure() if solution.filling >= ALL else settled.at_flow()
+    cells = linear_cells(solver, motion, solution, shear_weights(at, motion, factor))
+    if solution.filling < ALL:
+        cells = _with_filling(cells, solver, motion, solution)
+    return replace(cells, by_place=cells.by_place / clearance, by_rate=cells.by_rate / clearance)
+
+
+def linear_cells(
+    solver: FilmSolver, motion: Motion, solution: VolumeSolution, weights: Array, tilts: bool = False
+) -> LinearFilm:
+    """The film that a solver has settled with its openings as they are, by the c coordinates of film_changes instead
+    of SI units. weights: see shear_weights; tilts: whether the growth of the displacement over the width counts."""
+    from scipy.sparse import diags  # takes long to load
+
+    film, data, state = solver.film, solver.data, solution.state
+    if film.law.carries_gas:
+        return LinearFilm(*linear_states(film, motion, solution, weights, tilts), solution.field, ordered=True)
+    parts = data.films[0], data.ring[0], data.places[0], data.cells[0]
+    stencil, *slopes = oil_slopes(*parts, settled_states(solution), motion, tilts)
+    by_place, by_rate, by_total = (each.reshape(solution.w.size, -1) for each in slopes)
+    storage = np.where(film.grid.fixed, 0.0, film.grid.area * film.gaps(motion) * state.fraction_slope)
+    shares = (1.0, film.grid.height - 0.5)[: 1 + tilts]
+    unit = np.concatenate([share * pushing(film) for share in shares]).reshape(by_place.shape[1], -1)
+    return LinearFilm(
+        flow=by_neighbours(stencil),
+        storage=diags(storage.ravel(), format="csc"),
+        by_place=by_place,
+        by_rate=by_rate,
+        by_total=by_total.ravel(),
+        push=unit * state.pressure_slope.ravel(),
+        sheared=(weights * state.fraction_slope).ravel(),
+        field=solution.field,
+    )
 
 
 def by_neighbours(stencil: Array) -> csc_matrix:
@@ -142,94 +161,46 @@ def by_neighbours(stencil: Array) -> csc_matrix:
     return csc_matrix((entries, (np.tile(number.ravel(), len(NEIGHBOURS)), columns)), shape=(number.size,) * 2)
 
 
-class _SettledCells:
-    """A settled finite-volume film, of which the derivatives are taken."""
+def _with_filling(film: LinearFilm, solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> LinearFilm:
+    """A film, see linear_cells, with the filling of its supply's line as its last state: line filling' + outflow =
+    given. What the openings take is what the cells get without flowing out at open ends."""
+    from scipy.sparse import block_diag, bmat
 
-    def __init__(self, solver: FilmSolver, motion: Motion, solution: VolumeSolution, weights: Array) -> None:
-        """weights: see shear_weights."""
-        self._solver, self._motion, self._solution, self._weights = solver, motion, solution, weights
-        data = solver.data
-        self._parts = data.films[0], data.ring[0], data.width[0], data.cells[0]
-        self._law = np.append(given_parameters(solver.film.law), np.nan)
-        self._states = np.zeros((STATES, *solution.w.shape))
-        self._set_states()
+    data, states = solver.data, settled_states(solution)
+    own, parts = data.films[0], (data.ring[0], data.places[0], data.cells[0])
+    open_ = data.cells[0][UNKNOWN].ravel() != 0.0
+    stencil, by_place, *_ = oil_slopes(without_ends(own), *parts, states, motion)
+    outflow, by_place = -(open_ @ by_neighbours(stencil)), by_place.reshape(len(open_), -1)
+    by_filling, by_supply, push = _by_filling(solver, motion, solution)
+    return LinearFilm(
+        flow=bmat([[film.flow, by_filling.reshape(-1, 1)], [outflow.reshape(1, -1), [[by_supply]]]], "csc"),
+        storage=block_diag([film.storage, [[own.line]]], "csc"),
+        by_place=np.vstack([film.by_place, -(open_ @ by_place)]),
+        by_rate=np.vstack([film.by_rate, np.zeros((1, 2))]),
+        by_total=np.append(film.by_total, -(open_ @ film.by_total)),
+        push=np.column_stack([film.push, push]),
+        sheared=np.append(film.sheared, 0.0),
+        field=film.field,
+    )
 
-    def at_pressure(self) -> LinearFilm:
-        """The film with its openings as they are."""
-        from scipy.sparse import diags  # takes long to load
 
-        own, ring, _, cells = self._parts
-        flow, by_place, by_rate, by_total = self._balances(own)
-        clearance, (x, y) = self._solver.film.section.clearance, self._motion.d
-        gap = ring[GAP] + x * ring[SIN] - y * ring[COS]
-        storage = cells[UNKNOWN] * cells[AREA] * gap[:, None] * self._states[FRACTION_SLOPE]
-        return LinearFilm(
-            flow=flow,
-            storage=diags(storage.ravel(), format="csc"),
-            by_place=by_place / clearance,
-            by_rate=by_rate / clearance,
-            by_total=by_total,
-            push=self._pushed(self._states[PRESSURE_SLOPE]).reshape(2, -1),
-            sheared=(self._weights * self._states[FRACTION_SLOPE]).ravel(),
-            field=self._solution.field,
-        )
+def _by_filling(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> tuple[Array, float, Array]:
+    """Derivatives by the filling: of the balances (n,), of what the openings take, and of the force (2,) in N."""
+    data, filling, states = solver.data, solution.filling, settled_states(solution)
+    own, ring, places, cells = data.films[0], data.ring[0], data.places[0], data.cells[0]
+    (m, k), law = solution.w.shape, np.append(given_parameters(solver.film.law), np.nan)
+    step = 0.5 * min(2.0 * STEP, abs(filling), ALL - filling)  # pressures have a kink at both
 
-    def at_flow(self) -> LinearFilm:
-        """The film with the filling of its supply's line as its last state: line filling' + outflow = given. What the
-        openings take is what the cells get without flowing out at open ends."""
-        from scipy.sparse import block_diag, bmat
+    def at(change: float) -> tuple[Array, ...]:
+        solver.fill(filling + change)
+        cell_states(own, cells, law, 0.0, solution.w, states)
+        flows, stencil, fields = np.zeros(FLOWS), np.zeros((ENTRIES, m, k)), np.zeros((m, k, k + SIDES))
+        balances(own, ring, places, cells, states, seen_by_grid(motion), np.zeros((m, k)), stencil, fields, flows)
+        left = -fields[:, :, k + BY_ITSELF].ravel()
+        return left, flows[SUPPLY_NET : SUPPLY_NET + 1], np.array(pushed(solver.film, states[PRESSURE]))
 
-        film, open_ = self.at_pressure(), self._parts[-1][UNKNOWN].ravel() != 0.0
-        flow, by_place, *_ = self._balances(without_ends(self._parts[0]))
-        outflow, clearance = -(open_ @ flow), self._solver.film.section.clearance
-        by_filling, by_supply, push = self._by_filling()
-        return LinearFilm(
-            flow=bmat([[film.flow, by_filling.reshape(-1, 1)], [outflow.reshape(1, -1), [[by_supply]]]], "csc"),
-            storage=block_diag([film.storage, [[self._parts[0].line]]], "csc"),
-            by_place=np.vstack([film.by_place, -(open_ @ by_place) / clearance]),
-            by_rate=np.vstack([film.by_rate, np.zeros((1, 2))]),
-            by_total=np.append(film.by_total, -(open_ @ film.by_total)),
-            push=np.column_stack([film.push, push]),
-            sheared=np.append(film.sheared, 0.0),
-            field=film.field,
-        )
-
-    def _set_states(self) -> None:
-        own, _, _, cells = self._parts
-        cell_states(own, cells, self._law, 0.0, self._solution.w, self._states)
-        self._states[BEFORE_UPSTREAM] = self._solution.before
-
-    def _balances(self, own: np.record) -> tuple[csc_matrix, Array, Array, Array]:
-        """Derivatives of the balances of the n cells by their unknowns (n, n), by displacement and velocity over the
-        clearance (n, 2), and by omega_J + omega_S (n,)."""
-        stencil, *slopes = oil_slopes(own, *self._parts[1:], self._states, self._motion)
-        by_place, by_rate, by_total = (each.reshape(stencil[CENTRE].size, -1) for each in slopes)
-        return by_neighbours(stencil), by_place, by_rate, by_total.ravel()
-
-    def _by_filling(self) -> tuple[Array, float, Array]:
-        """Derivatives by the filling: of the balances (n,), of what the openings take, and of the force (2,) in N."""
-        filling = self._solution.filling
-        step = 0.5 * min(2.0 * STEP, abs(filling), ALL - filling)  # pressures have a kink at both
-
-        def at(change: float) -> tuple[Array, ...]:
-            own, ring, width, cells = self._parts
-            self._solver.fill(filling + change)
-            self._set_states()
-            (m, k), (x, y), flows = self._solution.w.shape, self._motion.d, np.zeros(FLOWS)
-            stencil, fields = np.zeros((ENTRIES, m, k)), np.zeros((m, k, k + SIDES))
-            motion = GridMotion(x, y, self._motion.omega)
-            balances(own, ring, width, cells, self._states, motion, np.zeros((m, k)), stencil, fields, flows)
-            left = -fields[:, :, k + BY_ITSELF].ravel()
-            return left, flows[SUPPLY_NET : SUPPLY_NET + 1], self._pushed(self._states[PRESSURE]).sum(axis=(1, 2))
-
-        left, outflow, push = ((ahead - back) / (2.0 * step) for ahead, back in zip(at(step), at(-step), strict=True))
-        return left, float(outflow[0]), push
-
-    def _pushed(self, pressure: Array) -> Array:
-        """(2, m, k) forces in N of the cells with scaled gauge pressures, or their derivatives."""
-        own, ring, _, cells = self._parts
-        weight = own.force_scale * cells[LOAD] * pressure
-        return np.stack([ring[row][:, None] * weight for row in (PUSH_X, PUSH_Y)])
+    left, outflow, push = ((ahead - back) / (2.0 * step) for ahead, back in zip(at(step), at(-step), strict=True))
+    return left, float(outflow[0]), push
 
 
 ROUND_OFF = 1e-11  # of the largest: of directions in which vectors do not reach

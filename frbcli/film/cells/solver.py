@@ -25,11 +25,9 @@ from frbcli.film.cells.balance.balances import (
     INFLOW,
     OUTFLOW,
     SUPPLY_NET,
-    GridMotion,
     balances,
 )
 from frbcli.film.cells.balance.boundaries import feed_at, is_limited, limited
-from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     CARRIED_GAS,
@@ -48,11 +46,10 @@ from frbcli.film.cells.block_cyclic import CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.cavity_edge import GapRise, full_cells, gap_rise, set_edges
 from frbcli.film.cells.data import SIDES, VolumeFilms, volume_films
 from frbcli.film.cells.film import Flows, VolumeFilm, VolumeSolution
-from frbcli.film.cells.gas.balance import FreeGas, GasMixing, KeptGas, free_gas, oil_paths, path_layers
+from frbcli.film.cells.gas.balance import FreeGas, GasMixing, KeptGas, free_gas
 from frbcli.film.cells.gas.carry import FACTOR, GAS_PAST, HEIGHT, PATHS, carry_gas, follow_oil, replace_oil
 from frbcli.film.cells.motion import Motion, Storage
-from frbcli.film.cells.tilted.balances import tilted_balances
-from frbcli.film.cells.tilted.data import land_places
+from frbcli.film.cells.tilted.motion import seen_by_grid
 from frbcli.film.gap import gap_rate
 
 ROUND_OFF = 1e-15  # residual of a cell over the terms that it is the sum of
@@ -109,8 +106,7 @@ class FilmSolver:
         kept, (m, k) = _alone(film if like is None else like), film.grid.shape
         self.film, self.data = film, kept._replace(films=kept.films.copy())  # how full its openings are is set here
         self.data.films["parameters"][0] = given_parameters(film.law)
-        self._parts = self.data.films[0], self.data.ring[0], self.data.width[0], self.data.cells[0]
-        self._places = land_places(film.grid)
+        self._parts = self.data.films[0], self.data.ring[0], self.data.places[0], self.data.cells[0]
         self._carries, self._off = False, 0.0  # whether free gas goes with the oil; what it has changed by last
         self._law = np.append(given_parameters(film.law), np.nan)  # where a cell is empty: not asked for here
         self._area = np.where(film.grid.fixed, 0.0, film.grid.area)
@@ -240,13 +236,8 @@ class FilmSolver:
 
     def _follow(self, motion: Motion) -> float:
         """The paths of the oil of the states as they are, see replace_oil."""
-        film, ring, width, cells = self._parts
-        if motion.tilts:
-            balances = CellBalances(self.film.section, self.film.grid, motion, self._before)
-            path_layers(oil_paths(balances, *self._states[:SOURCE]), self._paths)
-        else:
-            at = GridMotion(float(motion.d[0]), float(motion.d[1]), float(motion.omega))
-            follow_oil(film, ring, width, cells, self._states, at, self._paths)
+        film, _, _, cells = self._parts
+        follow_oil(*self._parts, self._states, seen_by_grid(motion, still=True), self._paths)
         return replace_oil(film, cells, self._states, self._paths)
 
     def _solve(self, motion: Motion, start: Array, storage: Storage, close: float = CLOSE) -> VolumeSolution:
@@ -328,25 +319,8 @@ class FilmSolver:
 
     def _flow(self, motion: Motion, past: Array) -> None:
         """Balances of the states without what is stored now."""
-        if motion.tilts:  # what the squeeze stores is stored by the solver
-            still, k = replace(motion, v=(0.0, 0.0), slope_rate=(0.0, 0.0)), past.shape[1]
-            self._fields[:, :, k:] = 0.0
-            self._fields[:, :, k] = -self.leaving(still, self._states, past)[:, :, 0]
-            return
-        film, ring, width, cells = self._parts
-        at = GridMotion(float(motion.d[0]), float(motion.d[1]), float(motion.omega))
-        balances(
-            film, ring, width, cells, self._states, at, past, self._stencil, self._fields, self._flows
-        )  # fmt: skip
-
-    @property
-    def stencil(self) -> Array:
-        """(ENTRIES, m, k) of the balances as they were last."""
-        return self._stencil
-
-    def leaving(self, motion: Motion, states: Array, past: Array, g: float = 0.0) -> Array:
-        """See tilted_balances, with stencil and flows of the solver."""
-        return tilted_balances(self._parts, self._places, motion, states, past, self._stencil, self._flows, g)
+        at, past = seen_by_grid(motion, still=True), np.ascontiguousarray(past)  # the solver stores by itself
+        balances(*self._parts, self._states, at, past, self._stencil, self._fields, self._flows)
 
     def _passed(self, motion: Motion) -> tuple[Array, Array]:
         """(m, k) what a cell passes on per pressure and per oil fraction of its own, from the derivatives."""

@@ -3,31 +3,30 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import astuple, replace
 
 import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.errors import FilmUnsolved
-from frbcli.film.cavitation.compiled import given_parameters
-from frbcli.film.cells.balance.balances import FLOWS, GridMotion, balances
+from frbcli.film.cells.balance.balances import FLOWS, balances
 from frbcli.film.cells.balance.boundaries import ALL
-from frbcli.film.cells.balance.newton_step import film_loads
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     CARRIED_GAS,
     PRESSURE,
+    PRESSURE_SLOPE,
     STATES,
-    TURNOVER,
-    cell_states,
 )
 from frbcli.film.cells.block_cyclic import ENTRIES, solve_blocks
-from frbcli.film.cells.cavity_edge import edge_slopes, gap_rise, set_edges
-from frbcli.film.cells.data import AREA, BY_ITSELF, BY_X, BY_Y, SIDES
+from frbcli.film.cells.cavity_edge import edge_slopes
+from frbcli.film.cells.data import ALL_SIDES, AREA, BY_ITSELF, BY_X, SIDES
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.cells.tilted.loads import press_cells
+from frbcli.film.cells.tilted.motion import seen_by_grid
 from frbcli.film.rectangles.film import FieldSlopes, FilmForce
 
 SPEED_STEP = 1e-6  # share of the speed by which it is changed for a derivative
@@ -72,63 +71,73 @@ def settled_force(solver: FilmSolver, motion: Motion, solution: VolumeSolution) 
     is mass-conserving. Where the edge of its cavity lies within cells, its sources follow the motion, too."""
     if solution.filling < ALL:
         return _force_at_flow(solver, motion, solution)
-    film, data, (m, k), clearance = solver.film, solver.data, solution.w.shape, solver.film.section.clearance
-    own, ring, width, cells = data.films[0], data.ring[0], data.width[0], data.cells[0]
-    states, law = np.zeros((STATES, m, k)), np.append(given_parameters(film.law), np.nan)
-    if solution.gas is not None:
-        states[CARRIED_GAS], states[TURNOVER] = solution.gas.carried
-    states[BEFORE_UPSTREAM] = solution.before
-    cell_states(own, cells, law, 0.0, solution.w, states)
-    if film.edged:
-        set_edges(film, gap_rise(film, motion), solution.w, states)
-    stencil, by_place, by_rate, by_total = oil_slopes(own, ring, width, cells, states, motion)
-    if film.edged:
-        for slopes, source in zip((by_place, by_rate), edge_slopes(film, motion, states[PRESSURE]), strict=True):
-            slopes -= cells[AREA][:, :, None] * source
-    fields = np.concatenate([np.zeros((m, k, k)), -by_place, -by_rate, -by_total], axis=2)
-    solve_blocks(stencil, np.zeros((m, k, k)), fields, stencil[0, 0], fields[0, 0])
-
-    def pushed(changes: Array) -> Array:
-        """(2, n) change of the force in N with up to two changes (m, k, n) of the field."""
-        delta, count = np.zeros((m, k, k + SIDES)), changes.shape[2]
-        delta[:, :, k + BY_X : k + BY_X + count] = changes
-        return np.array(film_loads(own, ring, cells, states, delta)[2:]).reshape(2, 2)[:, :count]
-
-    moved, moving, faster = np.split(fields[:, :, k:], [2, 4], axis=2)
+    film, clearance = solver.film, solver.film.section.clearance
+    changes, by_changes = film_changes(solver, motion, solution)
+    moved, faster = changes[:, :, :2] / clearance, changes[:, :, 4]
+    by_moved, by_moving, by_faster = np.split(by_changes, [2, 4], axis=1)
     followed = None
     if not film.law.carries_gas:
         place, fraction = clearance * np.array(motion.d), solution.state.fraction_slope
-        followed = FieldSlopes(place, motion.omega, moved / clearance, faster[:, :, 0], fraction, pushed(faster)[:, 0])
+        followed = FieldSlopes(place, motion.omega, moved, faster, fraction, by_faster[:, 0])
     return FilmForce(
         np.array(force(film, film.mean_pressure(solution.state))),
-        pushed(moved) / clearance,
-        pushed(moving) / clearance,
+        by_moved / clearance,
+        by_moving / clearance,
         solution.field,
         None if film.edged else solution.state.fraction,
         followed,
     )
 
 
+def film_changes(
+    solver: FilmSolver, motion: Motion, solution: VolumeSolution, tilts: bool = False
+) -> tuple[Array, Array]:
+    """What changes with the displacement over the clearance, its rate, and omega_J + omega_S: the unknowns of a film
+    that a solver has settled, (m, k, 2 c + 1), and the c loads, (c, 2 c + 1) in N and N s. c: the 2 of the
+    displacement, or 4 with its growth over the width, to which moments over the width belong; tilts: whether that
+    counts."""
+    film, data, (m, k), states = solver.film, solver.data, solution.w.shape, settled_states(solution)
+    own, ring, places, cells = data.films[0], data.ring[0], data.places[0], data.cells[0]
+    stencil, by_place, by_rate, by_total = oil_slopes(own, ring, places, cells, states, motion, tilts)
+    if film.edged:
+        for slopes, source in zip((by_place, by_rate), edge_slopes(film, motion, states[PRESSURE]), strict=True):
+            slopes -= cells[AREA][:, :, None] * source
+    fields = np.concatenate([np.zeros((m, k, k)), -by_place, -by_rate, -by_total], axis=2)
+    solve_blocks(stencil, np.zeros((m, k, k)), fields, stencil[0, 0], fields[0, 0])
+    changes, push = fields[:, :, k:], np.zeros((4, m, k))
+    press_cells(own, ring, cells, states, np.zeros((m, k, k + SIDES)), push)
+    by_cells = own.force_scale * push[:2] * states[PRESSURE_SLOPE]
+    shares = (1.0, film.grid.height - 0.5)[: 1 + tilts]
+    return changes, np.tensordot(np.concatenate([share * by_cells for share in shares]), changes, 2)
+
+
+def settled_states(solution: VolumeSolution) -> Array:
+    """(STATES, m, k) of the cells of a solution."""
+    states = np.zeros((STATES, *solution.w.shape))
+    states[:CARRIED_GAS], states[BEFORE_UPSTREAM] = astuple(solution.state), solution.before
+    return states
+
+
 def oil_slopes(
-    own: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: Motion
+    own: np.record, ring: Array, places: Array, cells: Array, states: Array, motion: Motion, tilts: bool = False
 ) -> tuple[Array, Array, Array, Array]:
     """Derivatives of what leaves the cells of a settled film, see balances for the arguments: the stencil
-    (ENTRIES, m, k) by their unknowns, and (m, k, 2) by the displacement and the velocity over the clearance, (m, k, 1)
-    by omega_J + omega_S, in which it is linear but for artificial diffusion."""
-    (m, k), (x, y) = states.shape[1:], motion.d
+    (ENTRIES, m, k) by their unknowns, and (m, k, c) by the displacement and the velocity over the clearance, (m, k, 1)
+    by omega_J + omega_S, in which it is linear but for artificial diffusion. c, tilts: see film_changes."""
+    m, k = states.shape[1:]
     stencil, nothing, step = np.zeros((ENTRIES, m, k)), np.zeros((m, k)), math.copysign(1.0, motion.omega)
     step = step * max(abs(motion.omega), 1.0) * (SPEED_STEP if own.diffuses else 1.0)
 
     def left(omega: float, g: float) -> Array:
-        """(m, k, SIDES) what leaves the cells, and by a velocity of the journal that moves it by g of itself."""
-        fields, at = np.zeros((m, k, k + SIDES)), GridMotion(x, y, omega, *motion.v, g=g)
-        balances(own, ring, width, cells, states, at, nothing, stencil, fields, np.zeros(FLOWS))
-        return -fields[:, :, k:]
+        """(m, k, 1 + c) what leaves the cells, and by a velocity of the journal that moves it by g of itself."""
+        fields = np.zeros((m, k, k + (ALL_SIDES if tilts else SIDES)))
+        at = seen_by_grid(replace(motion, omega=omega), g, tilts)
+        balances(own, ring, places, cells, states, at, nothing, stencil, fields, np.zeros(FLOWS))
+        net, near, far = -fields[:, :, [k + BY_ITSELF]], -fields[:, :, k + BY_X : k + SIDES], -fields[:, :, k + SIDES :]
+        return np.concatenate([net, near + far, 0.5 * (far - near)] if tilts else [net, near], axis=2)
 
     faster, both, here = left(motion.omega + step, 0.0), left(motion.omega, 1.0), left(motion.omega, 0.0)
-    by_total = (faster - here)[:, :, [BY_ITSELF]] / step
-    by_both, by_rate = (each[:, :, [BY_X, BY_Y]] for each in (both, here))
-    return stencil, by_both - by_rate, by_rate, by_total
+    return stencil, (both - here)[:, :, 1:], here[:, :, 1:], (faster - here)[:, :, :1] / step
 
 
 def _force_at_flow(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> FilmForce:

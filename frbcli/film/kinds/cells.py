@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import math
+from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frbcli.arrays import Array
 from frbcli.errors import NotConverged
@@ -21,6 +23,7 @@ from frbcli.film.cells.data import (
     GAP,
     GAS,
     GIVEN_PRESSURE,
+    MIDDLES,
     NOW,
     OIL,
     PASSED,
@@ -56,7 +59,94 @@ AROUND = 360  # angles at which the gap of a profile is looked at
 
 
 @dataclass(frozen=True)
-class CellFilms(Films):
+class VolumeKind(Films):
+    """Films of fields of cells, one for each land. All that a film keeps is in its fields."""
+
+    samples: ClassVar[int] = 192
+    counted: ClassVar[float] = 0.25  # 5 to 14 times the true error, of rotors without rings
+    counted_beside_rings: ClassVar[float] = 1.0  # the true error is 0.45 to 1.15 times all of the sum
+    # On a mesh twice as fine the error is still a third. Too little where errors accumulate: it is used only where the
+    # run was not repeated on fewer cells.
+    reach: ClassVar[float] = 3.0
+    on_cells: ClassVar[bool] = True
+
+    @property
+    @abstractmethod
+    def fields_of_films(self) -> tuple[tuple[int, VolumeFilm], ...]:
+        """The number of the film that each field belongs to, and its section on cells with its law."""
+
+    @property
+    def film_of_cells(self) -> NDArray[np.int64]:
+        return np.array([i for i, _ in self.fields_of_films])
+
+    @property
+    def remembering(self) -> tuple[bool, ...]:
+        keeps = {i: film.law.keeps_oil for i, film in self.fields_of_films}
+        return tuple(keeps[i] for i in range(self.count))
+
+    @property
+    def starving(self) -> bool:
+        return any(film.law.keeps_oil and is_unfed(film.section, type(film.law)) for _, film in self.fields_of_films)
+
+    def gaps(self, d: Array) -> Array:
+        ring, along = self.loop.ring, self.loop.places[:, MIDDLES, :-1]
+        ends = d.reshape(self.count, self.stations, 2)[self.film_of_cells]
+        near, far = (
+            ring[:, GAP] + end[:, :1] * ring[:, SIN] - end[:, 1:] * ring[:, COS] for end in (ends[:, 0], ends[:, -1])
+        )
+        return np.asarray(near[:, :, None] + along[:, None, :] * (far - near)[:, :, None])
+
+    @property
+    def gas_contents(self) -> Array:
+        laws = [film.law for _, film in self.fields_of_films]
+        return np.array([law.gas_content for law in laws if any(each.carries_gas for each in laws)])
+
+    def oil_unknowns(self, content: Array, near: Array, w: Array) -> Array:
+        """See Films.oil_unknowns."""
+        films = [film for _, film in self.fields_of_films]
+        count = len(films)
+        return np.stack([
+            unknown_with_gas(film, content[i::count], near[i::count], w[i])
+            if film.law.carries_gas
+            else unknown_at(film, content[i], near[i], w[i])
+            for i, film in enumerate(films)
+        ])  # fmt: skip
+
+    def oil_defect(self, displacements: Sequence[tuple[float, float]], wet: Array, flows: Array) -> float | None:
+        """Oil in the cells that their unknowns do not account for, over what has passed through.
+
+        The oil that a run carries on changes by the flows alone, to round-off; what can be lost is its agreement with
+        the pressures and oil fractions."""
+        if not any(self.remembering):
+            return None
+        worst, gaps = 0.0, self.gaps(np.array(displacements))
+        for number, (_, film) in enumerate(self.fields_of_films):
+            if film.law.keeps_oil:
+                now = gaps[number] * film.cells(wet[W, number], gas_of(film, wet[:, number])).fraction
+                worst = max(worst, missing_oil(film, now, wet[OIL, number], flows[PASSED, number]))
+        return worst
+
+    def oil_passed(self, flows: Array) -> dict[str, float]:
+        if not any(self.remembering):
+            return {}
+        films = [film for _, film in self.fields_of_films]
+        sections = [film.section for film in films]
+        size = np.array([
+            film.law.keeps_oil * each.copies * each.radius * each.width * each.clearance
+            for film, each in zip(films, sections, strict=True)
+        ])  # fmt: skip
+        came, left = (float(size @ flows[PASSED, :, flow]) for flow in (INFLOW, OUTFLOW))
+        passed = {"oil_in_m3": came, "oil_out_m3": left}
+        if any(each.diffusion is not None for each in sections):
+            passed["oil_created_m3"] = float(size @ flows[PASSED, :, CREATED])
+        return passed
+
+    def smallest_gap(self, i: int, d: Array) -> Array:
+        return least_gaps(dict(self.fields_of_films)[i].section, d)
+
+
+@dataclass(frozen=True)
+class CellFilms(VolumeKind):
     """own: the films; data: the same for the time loop; cells: (around, along); factor: cavitation factor of Couette's
     torque; states: at which forces are compared, of a run; viscosity: of the oil in the channels in Pa s; exponents:
     see CellEnds."""
@@ -69,14 +159,6 @@ class CellFilms(Films):
     viscosity: float
     exponents: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
-    samples: ClassVar[int] = 192
-    counted: ClassVar[float] = 0.25  # 5 to 14 times the true error, of rotors without rings
-    counted_beside_rings: ClassVar[float] = 1.0  # the true error is 0.45 to 1.15 times all of the sum
-    # On a mesh twice as fine the error is still a third. Too little where errors accumulate: it is used only where the
-    # run was not repeated on fewer cells.
-    reach: ClassVar[float] = 3.0
-    on_cells: ClassVar[bool] = True
-
     @property
     def loop(self) -> Any:
         """The films as the time loop takes them."""
@@ -86,25 +168,14 @@ class CellFilms(Films):
     def with_fields(self) -> tuple[VolumeFilm, ...]:
         return self.own
 
-    def gaps(self, d: Array) -> Array:
-        ring = self.data.ring
-        return np.asarray(ring[:, GAP] + d[:, :1] * ring[:, SIN] - d[:, 1:] * ring[:, COS])[:, :, None]
-
     @property
-    def gas_contents(self) -> Array:
-        return contents_of(self.own)
-
-    def oil_unknowns(self, content: Array, near: Array, w: Array) -> Array:
-        return unknowns_of(self.own, content, near, w)
+    def fields_of_films(self) -> tuple[tuple[int, VolumeFilm], ...]:
+        return tuple(enumerate(self.own))
 
     @property
     def cavitation_factor(self) -> str:  # type: ignore[override]
         """See Films."""
         return self.factor
-
-    @property
-    def remembering(self) -> tuple[bool, ...]:
-        return tuple(bool(film.remembers) for film in self.data.films)
 
     @property
     def sheared(self) -> Array:
@@ -200,33 +271,6 @@ class CellFilms(Films):
             flows[PASSED, i, flow] += spilled
         return force(film, film.mean_pressure(film.cells(w, gas)))
 
-    def oil_defect(self, displacements: Sequence[tuple[float, float]], wet: Array, flows: Array) -> float | None:
-        """Oil in the cells that their unknowns do not account for, over what has passed through.
-
-        The oil that a run carries on changes by the flows alone, to round-off; what can be lost is its agreement with
-        the pressures and oil fractions."""
-        if not any(self.remembering):
-            return None
-        worst = 0.0
-        for i, film in enumerate(self.own):
-            if not self.remembering[i]:
-                continue
-            now = film.content(Motion(displacements[i], (0.0, 0.0), 0.0), wet[W, i], gas_of(film, wet[:, i]))
-            worst = max(worst, missing_oil(film, now, wet[OIL, i], flows[PASSED, i]))
-        return worst
-
-    def oil_passed(self, flows: Array) -> dict[str, float]:
-        if not any(self.remembering):
-            return {}
-        size = [
-            keeps * film.section.copies * film.section.radius * film.section.width * film.section.clearance
-            for film, keeps in zip(self.own, self.remembering, strict=True)
-        ]
-        passed = passed_oil(size, flows)
-        if any(film.section.diffusion is not None for film in self.own):
-            passed["oil_created_m3"] = float(np.asarray(size) @ flows[PASSED, :, CREATED])
-        return passed
-
     def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
         film, d = self.own[i], place / self.clearances[i]
         motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), total)
@@ -234,7 +278,7 @@ class CellFilms(Films):
         acting = loads(at, motion, solution, slip, self.factor)
         moment = float(place[0] * acting.force[1] - place[1] * acting.force[0])
         power = -acting.torque.couette * slip + 0.5 * moment * total
-        return power, outflow(at, motion.d, at.pressure(solution.state))
+        return power, outflow(at, motion, at.pressure(solution.state))
 
     def heat_ends(self) -> Any:
         return CellEnds(
@@ -259,14 +303,6 @@ class CellFilms(Films):
     def _areas(self) -> Array:
         sections = [film.section for film in self.own]
         return np.array([each.copies * each.radius * each.width for each in sections])
-
-    def smallest_gap(self, i: int, d: Array) -> Array:
-        return least_gaps(self.own[i].section, d)
-
-    @property
-    def starving(self) -> bool:
-        films = zip(self.own, self.remembering, strict=True)
-        return any(keeps and is_unfed(film.section, type(film.law)) for film, keeps in films)
 
     def changeable(self) -> Self:
         data = self.data
@@ -321,24 +357,6 @@ def gas_of(film: VolumeFilm, wet: Array) -> Carried | None:
     return with_own_gas(wet[GAS] / wet[OIL]) if film.law.carries_gas else None
 
 
-def contents_of(films: Sequence[VolumeFilm]) -> Array:
-    """See Films.gas_contents."""
-    laws = [film.law for film in films]
-    gassy = any(law.carries_gas for law in laws)
-    return np.array([law.gas_content if law.carries_gas else 0.0 for law in laws if gassy])
-
-
-def unknowns_of(films: Sequence[VolumeFilm], content: Array, near: Array, w: Array) -> Array:
-    """See Films.oil_unknowns."""
-    count = len(films)
-    return np.stack([
-        unknown_with_gas(film, content[i::count], near[i::count], w[i])
-        if film.law.carries_gas
-        else unknown_at(film, content[i], near[i], w[i])
-        for i, film in enumerate(films)
-    ])  # fmt: skip
-
-
 def missing_oil(film: VolumeFilm, now: Array, oil: Array, passed: Array) -> float:
     """Oil (m, k) of a film that its unknowns, which hold `now`, do not account for, with what artificial diffusion has
     created, over what has passed through: passed (FLOWS,)."""
@@ -347,12 +365,6 @@ def missing_oil(film: VolumeFilm, now: Array, oil: Array, passed: Array) -> floa
     # per turnover of the film's own oil, if less than that has passed so far
     through = max(float(max(passed[INFLOW], passed[OUTFLOW])), float((area * now[free]).sum()))
     return (abs(float((area * (now - oil)[free]).sum())) + abs(float(passed[CREATED]))) / through
-
-
-def passed_oil(size: Sequence[float], flows: Array) -> dict[str, float]:
-    """Oil in m^3 that came into films and left them, see Films.oil_passed. size: m^3 of the unit of their flows."""
-    came, left = (np.asarray(size) @ flows[PASSED, :, flow] for flow in (INFLOW, OUTFLOW))
-    return {"oil_in_m3": float(came), "oil_out_m3": float(left)}
 
 
 def least_gaps(section: Section, d: Array) -> Array:

@@ -57,7 +57,7 @@ class FieldFilm(Protocol):
 
     def outflow(self, solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> float:
         """What leaves a part, which the solver has solved, through its open ends, m^3/s."""
-        ...
+        return outflow(solver.film, motion, solver.film.pressure(solution.state), solver.data)
 
 
 @dataclass(frozen=True)
@@ -76,9 +76,6 @@ class EvenFilm(FieldFilm):
     def parts(self, d: Array, total: float) -> tuple[Part, ...]:
         motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), total)
         return ((film_at(self.film, math.hypot(*motion.d), total), motion),)
-
-    def outflow(self, solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> float:
-        return outflow(solver.film, motion.d, solver.film.pressure(solution.state), solver.data)
 
 
 # (i, place, rate, total) -> force of a better film, and of the film, (2,) N each. Raises NotConverged.
@@ -193,16 +190,15 @@ class Films(ABC):
         """Oil in m^3 that came into all films that keep theirs, left them, and was created; empty if there are none."""
         return {}
 
+    @abstractmethod
     def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
         """Power in W that a film at rest dissipates, and flow in m^3/s through its open ends. drag: eta R^3 B / C of
-        the bearing in N m s. Raises NotConverged, and NotImplementedError of a kind that cases with heat do not
-        have."""
-        raise NotImplementedError
+        the bearing in N m s. Raises NotConverged."""
 
     def heat_ends(self) -> Any:
-        """Data from which the heat of the time loop computes the oil that leaves. Raises NotImplementedError as
-        power_and_flow."""
-        raise NotImplementedError
+        """Data from which the heat of the time loop computes the oil that leaves; empty of films that follow a tilt,
+        of which runs have no heat."""
+        return ()
 
     @property
     def end_flows(self) -> tuple[EndFlow, ...]:
@@ -242,13 +238,13 @@ class Films(ABC):
         return self
 
     def with_half_the_nodes(self) -> Self:
-        """The films with every other node of their tables, of films that are tabulated from solutions on cells."""
-        raise NotImplementedError
+        """The films with every other node of their tables of solutions on cells, where they have such."""
+        return self
 
     def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
-        """The films as forces that follow smoothly from the motion alone. ring_shares: (films,) speed of the ring
-        outside of each film over its total, 0 without one that turns."""
-        raise NotImplementedError
+        """The films as forces that follow smoothly from the motion alone; empty of films that follow a tilt.
+        ring_shares: (films,) speed of the ring outside of each film over its total, 0 without one that turns."""
+        return ()
 
     def smooth_ends(self, films: Sequence[FilmData]) -> tuple[EndFlow | MeanEndFlow, ...]:
         """The oil that leaves, as it follows smoothly from the motion alone. films: see smooth."""
@@ -273,7 +269,7 @@ class Films(ABC):
     @property
     def film_of_cells(self) -> NDArray[np.int64]:
         """(fields,) number of the film that each field of m x k cells in the time loop belongs to."""
-        return np.arange(self.count)
+        return np.zeros(0, dtype=np.int64)
 
     def gaps(self, d: Array) -> Array:
         """H in the cells of all fields, (fields, m, k) or (fields, m, 1), of displacements d (films stations, 2) over
@@ -317,8 +313,6 @@ class NoFilms(Films):
         """Raises IndexError: there is no film."""
         raise IndexError(i)
 
-    def heat_ends(self) -> Any:
-        return ()
-
-    def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
-        return ()
+    def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
+        """Raises IndexError: there is no film."""
+        raise IndexError(i)

@@ -7,26 +7,22 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import pairwise
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from frbcli.arrays import Array
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.balances import FLOWS
-from frbcli.film.cells.data import COS, GAP, OIL, PASSED, SHEARED, SIN, W
-from frbcli.film.cells.film import VolumeSolution
+from frbcli.film.cells.balance.side_flow import outflow
+from frbcli.film.cells.data import SHEARED
+from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.loads import loads
-from frbcli.film.cells.motion import Motion
-from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import film_at
-from frbcli.film.cells.tilted.balances import tilted_outflow
-from frbcli.film.cells.tilted.data import MIDDLES, TiltedVolumes, tilted_volumes
+from frbcli.film.cells.tilted.data import TiltedVolumes, tilted_volumes
 from frbcli.film.cells.tilted.steady_force import (
     COORDINATES,
     TiltedFilm,
@@ -39,26 +35,16 @@ from frbcli.film.cells.tilted.steady_force import (
 )
 from frbcli.film.gap import Section
 from frbcli.film.grid import FINER
-from frbcli.film.kinds.cells import (
-    begin_wet,
-    contents_of,
-    gas_of,
-    least_gaps,
-    missing_oil,
-    no_wet,
-    passed_oil,
-    unknowns_of,
-)
+from frbcli.film.kinds.cells import VolumeKind, begin_wet, no_wet
 from frbcli.film.kinds.contract import Compared, FieldFilm, Films, LinearOf, Part
 from frbcli.film.rectangles.film import FilmForce
-from frbcli.film.section_faults import is_unfed
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 ALONG, SHARES = 0.5 * (1.0 + _NODES[:, None]), 0.5 * _WEIGHTS  # places along a film, and their shares of it
 
 
 @dataclass(frozen=True)
-class TiltedFilms(Films):
+class TiltedFilms(VolumeKind):
     """own: the films; misalignments: (films, 2) tilts of the shells about x and y, rad; cells: (around, along) over the
     whole width, of a film that no groove divides; settled, centrifugal (films,): see FILM; states: at which forces are
     compared, of a run. Derivatives are as for films that are not mass-conserving."""
@@ -71,12 +57,7 @@ class TiltedFilms(Films):
     centrifugal: tuple[float, ...] = ()
 
     coordinates: ClassVar[int] = COORDINATES
-    on_cells: ClassVar[bool] = True
     stations: ClassVar[int] = 2
-    samples: ClassVar[int] = 192
-    counted: ClassVar[float] = 0.25
-    counted_beside_rings: ClassVar[float] = 1.0
-    reach: ClassVar[float] = 3.0
 
     @cached_property
     def data(self) -> TiltedVolumes:
@@ -121,60 +102,17 @@ class TiltedFilms(Films):
             begin_wet(land.film, motion, solution, wet[:, number])
         return wet, np.zeros((2, len(of), FLOWS))
 
-    @property
-    def remembering(self) -> tuple[bool, ...]:
-        return tuple(film.lands[0].film.law.keeps_oil for film in self.own)
-
     def linear(self, i: int, cells: tuple[int, int]) -> LinearOf:
         around, half = cells
         return partial(linear_tilted, self.own[i].finer((around, 2 * half)))
 
     @property
-    def starving(self) -> bool:
-        films = zip(self.own, self.remembering, strict=True)
-        return any(keeps and is_unfed(film.section, type(film.lands[0].film.law)) for film, keeps in films)
-
-    @property
-    def film_of_cells(self) -> NDArray[np.int64]:
-        return np.array([i for i, _ in self._lands])
-
-    def gaps(self, d: Array) -> Array:
-        ring, along = self.data.ring, self.data.places[:, MIDDLES, :-1]
-        ends = np.swapaxes(d.reshape(self.count, self.stations, 2)[self.film_of_cells], 0, 1)
-        near, far = (ring[:, GAP] + end[:, :1] * ring[:, SIN] - end[:, 1:] * ring[:, COS] for end in ends)
-        return np.asarray(near[:, :, None] + along[:, None, :] * (far - near)[:, :, None])
-
-    def oil_unknowns(self, content: Array, near: Array, w: Array) -> Array:
-        return unknowns_of([land.film for _, land in self._lands], content, near, w)
-
-    @property
-    def gas_contents(self) -> Array:
-        return contents_of([land.film for _, land in self._lands])
-
-    def oil_defect(self, displacements: Sequence[tuple[float, float]], wet: Array, flows: Array) -> float | None:
-        if not any(self.remembering):
-            return None
-        worst = 0.0
-        for number, (i, land) in enumerate(self._lands):
-            if self.remembering[i]:
-                motion = land.motion_of(np.array(displacements[2 * i : 2 * i + 2]))
-                now = land.film.content(motion, wet[W, number], gas_of(land.film, wet[:, number]))
-                worst = max(worst, missing_oil(land.film, now, wet[OIL, number], flows[PASSED, number]))
-        return worst
-
-    def oil_passed(self, flows: Array) -> dict[str, float]:
-        if not any(self.remembering):
-            return {}
-        sections = [land.film.section for _, land in self._lands]
-        size = [
-            self.remembering[i] * each.radius * each.width * each.clearance
-            for (i, _), each in zip(self._lands, sections, strict=True)
-        ]
-        return passed_oil(size, flows)
-
-    @property
     def _lands(self) -> list[tuple[int, TiltedLand]]:
         return [(i, land) for i, film in enumerate(self.own) for land in film.lands]
+
+    @property
+    def fields_of_films(self) -> tuple[tuple[int, VolumeFilm], ...]:
+        return tuple((i, land.film) for i, land in self._lands)
 
     def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
         """See Films.power_and_flow: the moment that turns against half of the total is the moment of the pressures
@@ -185,7 +123,7 @@ class TiltedFilms(Films):
             film, solution = film_at(land.film, math.hypot(*motion.d), total), land_solution(land.film, motion)
             couette -= loads(film, motion, solution, slip).torque.couette
             load += land.map.T @ (unit_loads(film) @ film.mean_pressure(solution.state).ravel())
-            flow += tilted_outflow(film, motion, solution)
+            flow += outflow(film, motion, film.pressure(solution.state))
         x, y, tilt_x, tilt_y = place.tolist()
         moment = x * load[1] - y * load[0] + tilt_x * load[3] - tilt_y * load[2]
         return couette * slip + 0.5 * float(moment) * total, flow
@@ -204,9 +142,6 @@ class TiltedFilms(Films):
             return to_ends @ better, to_ends @ own
 
         return forces
-
-    def smallest_gap(self, i: int, d: Array) -> Array:
-        return least_gaps(self.own[i].section, d)
 
     @property
     def fields(self) -> tuple[TiltedField, ...]:
@@ -233,9 +168,6 @@ class TiltedField(FieldFilm):
     def parts(self, d: Array, total: float) -> tuple[Part, ...]:
         place, still = self.coordinates(d), np.zeros(COORDINATES)
         return tuple((land.film, land.motion(place, still, total)) for land in self.film.lands)
-
-    def outflow(self, solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> float:
-        return tilted_outflow(solver.film, motion, solution)
 
 
 PLANE = slice(0, 2)  # of the four coordinates of a journal that tilts: its displacement

@@ -9,9 +9,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from numba.extending import overload
-
-from frbcli.compiled import AS_KERNELS, compiled
+from frbcli.compiled import by_types, compiled, type_of
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.mean_fields import MeanFilm, mean_force
 from frbcli.film.penalty_table.table import PenaltyTableFilm, source_force
@@ -24,11 +22,9 @@ FilmData = ShortFilm | SuppliedShortFilm | TableFilm | FieldsFilm | ChainFilm | 
 
 NEAR_CENTRE = 1e-6  # below this eccentricity the direction of the line of centres is arbitrary, and does not matter
 
-# What each kind says: the force (r, t), its derivatives by w (rr, rt, tr, tt) and by the eccentricity (r, t).
+# What each kind says, but for the short bearing: the force (r, t), its derivatives by w (rr, rt, tr, tt) and by the
+# eccentricity (r, t).
 POLAR = {
-    ShortFilm: lambda film, eccentricity, w_r, w_t, omega: short_closed(
-        eccentricity, w_r, w_t, film.slenderness, film.clipped == 1
-    ),
     SuppliedShortFilm: lambda film, eccentricity, w_r, w_t, omega: short_general(
         eccentricity, w_r, w_t, film.slenderness, film.sigma, film.level
     ),
@@ -43,42 +39,10 @@ POLAR = {
 }
 
 
+@by_types(lambda film, *_: POLAR.get(type_of(film)), inline=False)
 def _along_and_across(film: Any, eccentricity: float, w_r: float, w_t: float, omega: float) -> Any:
-    """The eight numbers of POLAR for a film of any kind."""
-    raise NotImplementedError
-
-
-@overload(_along_and_across, jit_options=AS_KERNELS)
-def _of_a_kind(film, eccentricity, w_r, w_t, omega):  # type: ignore[no-untyped-def]
-    return POLAR[film.instance_class]
-
-
-def _in_frame(film: Any, d_x: float, d_y: float, v_x: float, v_y: float, omega: float) -> Any:
-    """film_force, by the frame in which the film is solved."""
-    raise NotImplementedError
-
-
-@overload(_in_frame, jit_options=AS_KERNELS)
-def _by_kind(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
-    solve = _standing if film.instance_class is ChainFilm else _polar
-    # w = v - (omega/2) J d: the motion seen from a frame that turns with half the speed (4.5)
-    return lambda film, d_x, d_y, v_x, v_y, omega: solve(
-        film, d_x, d_y, v_x + 0.5 * omega * d_y, v_y - 0.5 * omega * d_x, omega
-    )
-
-
-@compiled()
-def film_force(
-    film: Any, d_x: float, d_y: float, v_x: float, v_y: float, omega: float,
-) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
-    """Force of one whole bearing on the journal.
-
-    d: displacement over the clearance (|d| < 1 is the caller's duty); v: its rate in 1/s; omega: omega_J + omega_S in
-    rad/s.
-    Returns the force (x, y) in N, its derivatives by d (xx, xy, yx, yy) in N and by v (xx, xy, yx, yy) in N s: ten
-    numbers.
-    """
-    return _in_frame(film, d_x, d_y, v_x, v_y, omega)  # type: ignore[no-any-return]  # an overload of numba
+    """The eight numbers of POLAR for a film of any kind; the short bearing's are its own."""
+    return short_closed(eccentricity, w_r, w_t, film.slenderness, film.clipped == 1)
 
 
 @compiled()
@@ -140,3 +104,28 @@ def _turned(rr: float, rt: float, tr: float, tt: float, c: float, s: float) -> t
     e, f = c * rr - s * tr, c * rt - s * tt
     g, h = s * rr + c * tr, s * rt + c * tt
     return e * c - f * s, e * s + f * c, g * c - h * s, g * s + h * c
+
+
+def _in_frame_of_shell(film, d_x, d_y, w_x, w_y, omega):  # type: ignore[no-untyped-def]
+    return _standing(film, d_x, d_y, w_x, w_y, omega)
+
+
+@by_types(lambda film, *_: _in_frame_of_shell if type_of(film) is ChainFilm else None, inline=False)
+def _in_frame(film: Any, d_x: float, d_y: float, w_x: float, w_y: float, omega: float) -> Any:
+    """film_force, by the frame in which the film is solved."""
+    return _polar(film, d_x, d_y, w_x, w_y, omega)
+
+
+@compiled()
+def film_force(
+    film: Any, d_x: float, d_y: float, v_x: float, v_y: float, omega: float,
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:  # fmt: skip
+    """Force of one whole bearing on the journal.
+
+    d: displacement over the clearance (|d| < 1 is the caller's duty); v: its rate in 1/s; omega: omega_J + omega_S in
+    rad/s.
+    Returns the force (x, y) in N, its derivatives by d (xx, xy, yx, yy) in N and by v (xx, xy, yx, yy) in N s: ten
+    numbers.
+    """
+    # w = v - (omega/2) J d: the motion seen from a frame that turns with half the speed (4.5)
+    return _in_frame(film, d_x, d_y, v_x + 0.5 * omega * d_y, v_y - 0.5 * omega * d_x, omega)  # type: ignore[no-any-return]

@@ -76,7 +76,9 @@ def _draw_models(axes: Axes, case: Case) -> None:
         for given in _compared(law, chosen):
             try:
                 fraction = law.scaled(given, over_cavity).curve(ratio)
-            except (NotImplementedError, ValueError):  # no law of the pressure alone, or not with this oil
+            except ValueError:  # not with this oil
+                continue
+            if fraction is None:
                 continue
             own = law.name == case.film.cavitation and given == chosen
             _draw(axes, number, ratio * cavity, fraction, law.legend(given), own)

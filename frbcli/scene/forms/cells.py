@@ -39,10 +39,7 @@ class CellForm(FilmForm):
     """Finite volumes, their number chosen by the target."""
 
     by_cells: ClassVar[bool] = True
-    chosen_by_target: ClassVar[bool] = True
     fine_when_static: ClassVar[bool] = True
-    error_by_eccentricity: ClassVar[bool] = True
-    turns_cells: ClassVar[bool] = True
     lengths: ClassVar[tuple[int, ...]] = ALONG  # cells along to choose from
     compiling: ClassVar[tuple[float, float]] = COMPILING
 

@@ -55,18 +55,17 @@ class FilmForm:
     work: SolveCounts
     us: float
 
-    by_cells: ClassVar[bool] = False  # whether it has cells or elements whose number a plan may choose
-    chosen_by_target: ClassVar[bool] = False  # whether a plan takes as many of them as the target needs
+    # Whether it has cells: a plan chooses their number by the target, they may turn with the oil, and the error is of
+    # eccentricities.
+    by_cells: ClassVar[bool] = False
     lengths: ClassVar[tuple[int, ...]] = ()  # numbers of cells along that it may choose from
     fine_when_static: ClassVar[bool] = False  # whether static results are computed on finer cells than a run
     # Cells (around, along) of its own of static results, and coarser ones for their error; empty of films of runs.
     static_cells: ClassVar[tuple[tuple[int, int], ...]] = ()
-    error_by_eccentricity: ClassVar[bool] = False  # whether its error is of eccentricities, not of forces
     solved: ClassVar[bool] = True  # whether there is a pressure, on a mesh whose error is known
     table_of_solutions: ClassVar[bool] = False  # whether it is tabulated from solutions on cells before a run
     solved_each_call: ClassVar[bool] = False  # whether each call is expensive, so that fewer steps are worth it
     inclines: ClassVar[bool] = False  # whether its gaps may have a tilt, in machines at rest
-    turns_cells: ClassVar[bool] = False  # whether its cells may turn with the oil
     as_exact: ClassVar[float] = 1.0  # share of its cells along that are as exact in a film whose errors are tabulated
     any_theory: ClassVar[bool] = False  # whether the theory of the short bearing applies to it, too
     modal: ClassVar[bool] = False  # whether kinematic tests take the pressure from the modal film

@@ -97,7 +97,7 @@ def speed_cycle_faults(case: Case) -> Iterator[Fault]:
     yield from turning_port_faults(case)
     if not by_shooting(case):
         yield from smooth_faults(case)
-    elif form_of(case).turns_cells and any(
+    elif form_of(case).by_cells and any(
         place.feed_holes is not None or (not is_plain(place.geometry) and _turns(case, place))
         for place in film_places(case)
     ):

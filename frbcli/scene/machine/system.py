@@ -284,7 +284,7 @@ def make_system(
     rotor, default: of the run; free_speed: whether its speed is free."""
     places, ringed = film_places(case), turning_rings(case)
     films = make_films(case, plan, top_Hz)
-    with_oil = [plan.form.turns_cells and turns_with_oil(case, place) for place in places]
+    with_oil = [plan.form.by_cells and turns_with_oil(case, place) for place in places]
     return System(
         rotor=make_rotor(case, COORDINATES[: films.coordinates], free_speed) if rotor is None else rotor,
         films=films,

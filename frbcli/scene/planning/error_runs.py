@@ -90,7 +90,7 @@ class Trial:
 def planned_trial(case: Case, plan: Plan, profile: SpeedProfile) -> Trial | None:
     """The trial of a run along a speed profile; None where the films have no cells that were chosen by a target, or
     where it would take long compared with the run."""
-    if not plan.form.chosen_by_target or plan.cells is None:
+    if not plan.form.by_cells or plan.cells is None:
         return None
     end = end_of_trial(profile)
     trial = Trial(plan, _finer(plan), profile.with_stops([end]).until(end))

@@ -52,7 +52,7 @@ def expected_error(plan: Plan) -> ExpectedError:
     """From the tolerance of a step and the known error of the films of a plan."""
     form = plan.form
     reach = 1.0 if form.by_cells else REACH
-    force = None if form.error_by_eccentricity or not form.solved else plan.film_error
+    force = None if form.by_cells or not form.solved else plan.film_error
     return ExpectedError(SUMMED * plan.tolerance + reach * plan.film_error, force)
 
 
@@ -110,7 +110,7 @@ def make_plan(case: Case, analysis: str = RUN) -> Plan:
         target = min(LOOSER_TARGET * target, LOOSEST)
         plan = _plan(case, target)
     plan = replace(plan, decisions=(*plan.decisions, *resolution_decisions(case, plan)))
-    if not plan.form.chosen_by_target and budget is None:
+    if not plan.form.by_cells and budget is None:
         return plan
     return replace(plan, decisions=(*plan.decisions, _about_target(case, plan)))
 
@@ -121,15 +121,15 @@ def _about_target(case: Case, plan: Plan) -> Decision:
     by_itself = altered(accuracy, {"mesh": None, "tolerance": None})
     asked = _plan(altered(case, {"accuracy": by_itself}), accuracy.target)
     error, needed = expected_error(plan).eccentricity, expected_error(asked).eccentricity
-    which = "error of such cells" if plan.form.chosen_by_target else "expected error"
+    which = "error of such cells" if plan.form.by_cells else "expected error"
     own = f"{which} {error:.1g}, {clock(_total_s(case, plan))}"
     by_hand = accuracy.mesh is not None or accuracy.tolerance is not None
     value, needs, knee = f"{accuracy.target:g}", "needs", ""
     if needed > REACHED * accuracy.target:
         value, needs = f"{value} is out of reach", "nearest to it"
-        if asked.form.chosen_by_target:
+        if asked.form.by_cells:
             knee = f"; the cheapest cells within {KNEE:g} times the least error that can be had"
-    elif heavily_loaded(case) and asked.form.chosen_by_target:
+    elif heavily_loaded(case) and asked.form.by_cells:
         value, knee = f"{value} is not certain", "; errors of steps grow in such a film under such a load"
     if (plan.cells, plan.mesh, plan.tolerance) == (asked.cells, asked.mesh, asked.tolerance):
         return Decision("target", value, own + knee)
@@ -300,7 +300,7 @@ def _decide_form(case: Case, films: FilmChoice, decide: Decide) -> None:
     for decided in films.form.decisions(case, films):
         decide(*decided)
     with_oil = [place.name for place in film_places(case) if turns_with_oil(case, place)]
-    if with_oil and films.form.turns_cells:
+    if with_oil and films.form.by_cells:
         reason = "set in the case" if case.film.grid != "auto" else "no openings, and the film is mass-conserving"
         several = len(with_oil) < len(film_places(case))
         which = f"{', '.join(with_oil)}: half-speed" if several else "half-speed"
@@ -320,7 +320,7 @@ def _time_integration(case: Case, films: FilmChoice, target: float, decide: Deci
     decide("integrator", method, reason)
     whole = "the target" if target == case.accuracy.target else f"{target:.2g}, the target that the budget pays for"
     tolerance, reason = share * target, f"{share:g} of {whole}, for each step"
-    if films.form.chosen_by_target:
+    if films.form.by_cells:
         share = CELL_SHARE * (HEAVY_SHARE if heavily_loaded(case) else 1.0)
         tolerance, reason = share * target, f"{share:.2g} of {whole}, for each step"
         if films.error > target:

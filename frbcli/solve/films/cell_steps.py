@@ -43,8 +43,9 @@ class Work(NamedTuple):
     SIDES + S); w, first, past (F, m, k) of the stage, first being w of the first stage; stage_oil (stages, F, m, k)
     rates of the stages; stage_flows (stages, F, FLOWS); of oil that carries gas, else without films, gas_past (F, m,
     k), stage_gas (stages, F, m, k) and gas_paths (F, PATHS, m, k), as of the oil and see carry.py; grids (F,) records
-    GRID; slopes (F, 4). Coupled channels with Q feed holes, S of one film at most, need channel (F, m, k), answers (Q,
-    1 + 2 F), changes (F, S), cross (2 F, 2 F), see channels.py; all but changes have no rows if there are none."""
+    GRID; push (4, m, k), loads (F, 2), slopes (F, 2, 2), unused (2, 2), see film_loads. Coupled channels with Q feed
+    holes, S of one film at most, need channel (F, m, k), answers (Q, 1 + 2 F), changes (F, S), cross (2 F, 2 F), see
+    channels.py; all but changes have no rows if there are none."""
 
     states: Array
     stencil: Array
@@ -59,7 +60,10 @@ class Work(NamedTuple):
     stage_gas: Array
     gas_paths: Array
     grids: Records
+    push: Array
+    loads: Array
     slopes: Array
+    unused: Array
     channel: Array
     answers: Array
     changes: Array
@@ -95,7 +99,10 @@ def make_cell_work(films: VolumeFilms, wet: Array, stages: int) -> Work:
     return Work(
         *cell_arrays(wet, SIDES + slots, stages),
         np.zeros(count, GRID),
-        np.zeros((count, 4)),
+        np.zeros((4, m, k)),
+        np.zeros((count, 2)),
+        np.zeros((count, 2, 2)),
+        np.zeros((2, 2)),
         np.zeros((coupled, m, k)),
         np.zeros((feed_holes, 1 + 2 * coupled)),
         np.zeros((count, slots)),

@@ -14,19 +14,20 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import EMPTY
-from frbcli.film.cells.balance.balances import CHANNELS_NET, CREATED, ENDS_NET, SUPPLY_NET, GridMotion, balances
-from frbcli.film.cells.balance.newton_step import damp, film_loads, imbalance, store_rates
+from frbcli.film.cavitation.law import ABOVE_KINK
+from frbcli.film.cells.balance.balances import CHANNELS_NET, CREATED, ENDS_NET, SUPPLY_NET, balances
+from frbcli.film.cells.balance.newton_step import damp, imbalance, store_rates
 from frbcli.film.cells.balance.resting import find_resting, rests
 from frbcli.film.cells.balance.states import FRACTION, FRACTION_SLOPE, PRESSURE_SLOPE, cell_states, follow_law, hold
 from frbcli.film.cells.block_cyclic import solve_ring_at
 from frbcli.film.cells.channels.flow import ask_of_channels, exchange
 from frbcli.film.cells.data import (
+    ALL_SIDES,
     AREA,
     BY_ITSELF,
-    BY_X,
-    BY_Y,
     COS,
     GAP,
+    MIDDLES,
     SHEARED,
     SIDES,
     SIN,
@@ -34,16 +35,14 @@ from frbcli.film.cells.data import (
     Records,
     VolumeFilms,
 )
-from frbcli.film.cells.film import ABOVE_KINK
 from frbcli.film.cells.gas.carry import store_gas_rates, take_gas_along
+from frbcli.film.cells.tilted.loads import film_loads
+from frbcli.film.cells.tilted.motion import GridMotion, gap_along, level
 from frbcli.film.roughness.rough_gap import stress_factor
 from frbcli.solve.films.cell_steps import oil_fraction
 from frbcli.solve.films.fillings import follow_filling
 from frbcli.solve.stage.equations import FilmMotion
 
-# Layers of fields: the elimination takes the first ones; then two of them keep what the journal's velocities did to the
-# cells when the film was last linearised.
-KEPT_BY_X, KEPT_BY_Y = range(2)
 # The cells balance as they are, and follow the journal by older derivatives, or by current ones; or they will balance
 # after the correction that is under way; or they are to be asked again.
 HELD, SOLVED, AHEAD, OPEN = range(4)
@@ -60,24 +59,81 @@ NO_FACTOR, GLOBAL_FACTOR, LOCAL_FACTOR, SIMPLE_FACTOR = range(4)
 
 
 @compiled()
-def stray_gas(
-    film: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, work: Any, f: int,
-    drop: float, w: Array,
-) -> float:  # fmt: skip
-    """The states of film f at w with the free gas that its flows take along; what it was off by, over all gas."""
-    stray = take_gas_along(film, ring, width, cells, states, motion, work.gas_past[f], work.gas_paths[f])
-    cell_states(film, cells, work.grids[f].law, drop, w, states)
+def _stray_gas(films: Any, work: Any, n: int, motion: GridMotion, law: Array, drop: float) -> float:
+    """The states of field n with the free gas that its flows take along; what it was off by, over all gas."""
+    film, ring, places, cells, states = films.films[n], films.ring[n], films.places[n], films.cells[n], work.states[n]
+    stray = take_gas_along(film, ring, places, cells, states, motion, work.gas_past[n], work.gas_paths[n])
+    cell_states(film, cells, law, drop, work.w[n], states)
     return float(stray / film.gas_content)
 
 
 @compiled()
-def store_stage(film: np.record, ring: Array, cells: Array, work: Any, f: int, g: float, flows: Array) -> None:
-    """The rates of oil and gas of film f, whose balances hold in this stage, see store_rates and store_gas_rates."""
-    states, grid = work.states[f], work.grids[f]
-    s = grid.stage
-    store_rates(ring, cells, states, grid.x, grid.y, g, work.past[f], work.fields[f], work.stage_oil[s, f])
+def _store_stage(films: Any, work: Any, n: int, s: int, motion: GridMotion, flows: Array) -> None:
+    """The rates of oil and gas of field n, whose balances hold in stage s, see store_rates and store_gas_rates."""
+    film, states, cells = films.films[n], work.states[n], films.cells[n]
+    past, fields, rates = work.past[n], work.fields[n], work.stage_oil[s, n]
+    store_rates(films.ring[n], films.places[n], cells, states, motion, past, fields, rates)
     if film.carries_gas:
-        store_gas_rates(film, cells, states, work.gas_paths[f], work.stage_gas[s, f], flows)
+        store_gas_rates(film, cells, states, work.gas_paths[n], work.stage_gas[s, n], flows)
+
+
+@compiled()
+def solve_cells(
+    films: Any, work: Any, n: int, grid: np.record, motion: GridMotion, s: int, iteration: int, pace: float
+) -> None:
+    """A step of Newton's method of field n in stage s: its changes in work.fields, grid.balance, and its loads with
+    their derivatives, which are older ones of a field that is held. pace: at which the gap changes, 1/s."""
+    film, ring, places, cells = films.films[n], films.ring[n], films.places[n], films.cells[n]
+    w, states, fields, stencil, flows = work.w[n], work.states[n], work.fields[n], work.stencil, work.stage_flows[s, n]
+    (m, k), sides, remembers = w.shape, ALL_SIDES if motion.by_ends else SIDES, film.remembers
+    drop, slots, left = film.centrifugal * grid.speed * grid.speed, fields.shape[2] - k - sides, 0.0
+    grid.stage = s
+    for weighing in range(2):
+        cell_states(film, cells, grid.law, drop, w, states)
+        if iteration == 0:
+            hold(states, motion.omega)
+        find_resting(film, cells, states, motion.omega == 0.0 and slots == 0 and not motion.by_ends, fields)
+        stray = _stray_gas(films, work, n, motion, grid.law, drop) if film.carries_gas else 0.0
+        balances(film, ring, places, cells, states, motion, work.past[n], stencil, fields, flows)
+        if slots > 0:
+            exchange(cells, states, work.channel[n], stencil, fields, flows)
+        mean, largest = imbalance(cells, fields)
+        left = max(mean, (CELL_SHARE if remembers else LOOSE_SHARE) * largest) / (film.settled * pace)
+        left = max(left, stray / film.settled)
+        if weighing == 1 or left >= 1.0 or film.given == 0.0:
+            break
+        if not follow_filling(film, grid, flows, motion.g, film.settled * pace):
+            break
+    balanced = left < 1.0
+    if balanced and remembers:
+        _store_stage(films, work, n, s, motion, flows)
+    if balanced and iteration > 0 and grid.ratio < SLOW:
+        grid.balance = HELD
+        for i in range(m):  # the journal takes the film along as it did before, which the first layers keep
+            for j in range(k):
+                fields[i, j, k + BY_ITSELF] = 0.0
+                fields[i, j, k + 1], fields[i, j, k + 2] = fields[i, j, 0], fields[i, j, 1]
+                if motion.by_ends:
+                    fields[i, j, k + 3], fields[i, j, k + 4] = fields[i, j, 2], fields[i, j, 3]
+        film_loads(film, ring, places, cells, states, fields, work.push, work.loads[n], work.unused)
+        return
+    # Films that share oil have to balance as they are: what passes between them is known for that alone. So is gas, and
+    # what openings take that give way.
+    alone = iteration < PLAIN and slots == 0 and not film.carries_gas
+    alone = alone and (film.given == 0.0 or grid.filling == 1.0)
+    soon = left < (GAINS_CARRIED if remembers else NEWTON_GAINS) and alone
+    grid.balance = SOLVED if balanced else AHEAD if soon else OPEN
+    if iteration >= PLAIN:  # kinks make plain steps go to and fro: w is kept back, less and less
+        damp(cells, pace * DAMPING ** (iteration - PLAIN), stencil)
+    if slots > 0:
+        ask_of_channels(cells, fields)
+    solve_ring_at(film.solver_at, stencil, work.blocks, fields)
+    for i in range(m):
+        for j in range(0 if rests(states, i) else k):
+            fields[i, j, 0], fields[i, j, 1] = fields[i, j, k + 1], fields[i, j, k + 2]
+            if motion.by_ends:
+                fields[i, j, 2], fields[i, j, 3] = fields[i, j, k + 3], fields[i, j, k + 4]
+    film_loads(film, ring, places, cells, states, fields, work.push, work.loads[n], work.slopes[n])
 
 
 @compiled(inline=True)
@@ -105,65 +161,21 @@ def cell_response(
     films: VolumeFilms, work: Any, f: int, motion: FilmMotion, g: float, s: int, iteration: int
 ) -> tuple[float, float, float, float, float, float, float, float, float, float]:
     """The response, see film_response of forces.py, of a film with cells."""
-    film, ring, width, cells = films.films[f], films.ring[f], films.width[f], films.cells[f]
-    w, past, states, fields = work.w[f], work.past[f], work.states[f], work.fields[f]
-    stencil, grid, slopes, flows = work.stencil, work.grids[f], work.slopes[f], work.stage_flows[s, f]
+    film, grid, loads, slopes = films.films[f], work.grids[f], work.loads[f], work.slopes[f]
     d_x, d_y, v_x, v_y, omega = motion
-    turn, spin, remembers, (m, k) = grid.turn, grid.speed, film.remembers, w.shape
+    turn, spin = grid.turn, grid.speed
     cosine, sine = math.cos(turn), math.sin(turn)
-    x, y = cosine * d_x + sine * d_y, cosine * d_y - sine * d_x
-    grid.stage, grid.x, grid.y = s, x, y
+    grid.x, grid.y = cosine * d_x + sine * d_y, cosine * d_y - sine * d_x
     against_x, against_y = v_x + spin * d_y, v_y - spin * d_x
     v_f, v_g = cosine * against_x + sine * against_y, cosine * against_y - sine * against_x
     if iteration == 0:  # what the law follows stays as it is at the guess: its derivatives are left out
         follow_law(film, d_x, d_y, v_x, v_y, omega, grid.law)
-    drop, rate = film.centrifugal * spin * spin, 1.0 / g if remembers else 0.0
     pace = 0.5 * abs(omega - 2.0 * spin) + math.sqrt(v_f * v_f + v_g * v_g) + SLOWEST
-    slots, left = fields.shape[2] - fields.shape[1] - SIDES, 0.0
-    against = GridMotion(x, y, omega - 2.0 * spin, v_f, v_g, spin, g, rate)
-    for weighing in range(2):
-        cell_states(film, cells, grid.law, drop, w, states)
-        if iteration == 0:
-            hold(states, omega - 2.0 * spin)
-        find_resting(film, cells, states, omega == 2.0 * spin and slots == 0, fields)
-        stray = stray_gas(film, ring, width, cells, states, against, work, f, drop, w) if film.carries_gas else 0.0
-        balances(film, ring, width, cells, states, against, past, stencil, fields, flows)
-        if slots > 0:
-            exchange(cells, states, work.channel[f], stencil, fields, flows)
-        mean, largest = imbalance(cells, fields)
-        left = max(mean, (CELL_SHARE if remembers else LOOSE_SHARE) * largest) / (film.settled * pace)
-        left = max(left, stray / film.settled)
-        if weighing == 1 or left >= 1.0 or film.given == 0.0:
-            break
-        if not follow_filling(film, grid, flows, g, film.settled * pace):
-            break
-    balanced = left < 1.0
-    if balanced and remembers:
-        store_stage(film, ring, cells, work, f, g, flows)
-    if balanced and iteration > 0 and grid.ratio < SLOW:
-        grid.balance = HELD
-        for i in range(m):  # the journal takes the film along as it did before
-            for j in range(k):
-                fields[i, j, k + BY_ITSELF] = 0.0
-                fields[i, j, k + BY_X], fields[i, j, k + BY_Y] = fields[i, j, KEPT_BY_X], fields[i, j, KEPT_BY_Y]
-        f_x, f_y, _, _, _, _ = film_loads(film, ring, cells, states, fields)
-    else:
-        # Films that share oil have to balance as they are: what passes between them is known for that alone. So is gas,
-        # and what openings take that give way.
-        alone = iteration < PLAIN and slots == 0 and not film.carries_gas
-        alone = alone and (film.given == 0.0 or grid.filling == 1.0)
-        soon = left < (GAINS_CARRIED if remembers else NEWTON_GAINS) and alone
-        grid.balance = SOLVED if balanced else AHEAD if soon else OPEN
-        if iteration >= PLAIN:  # kinks make plain steps go to and fro: w is kept back, less and less
-            damp(cells, pace * DAMPING ** (iteration - PLAIN), stencil)
-        if slots > 0:
-            ask_of_channels(cells, fields)
-        solve_ring_at(film.solver_at, stencil, work.blocks, fields)
-        f_x, f_y, slopes[0], slopes[1], slopes[2], slopes[3] = film_loads(film, ring, cells, states, fields)
-        for i in range(m):
-            for j in range(0 if rests(states, i) else k):
-                fields[i, j, KEPT_BY_X], fields[i, j, KEPT_BY_Y] = fields[i, j, k + BY_X], fields[i, j, k + BY_Y]
-    return turned_back(cosine, sine, f_x, f_y, slopes[0], slopes[1], slopes[2], slopes[3])
+    against = level(grid.x, grid.y, omega - 2.0 * spin, v_f, v_g, spin, g, 1.0 / g if film.remembers else 0.0)
+    solve_cells(films, work, f, grid, against, s, iteration, pace)
+    return turned_back(
+        cosine, sine, loads[0], loads[1], slopes[0, 0], slopes[0, 1], slopes[1, 0], slopes[1, 1]
+    )  # fmt: skip
 
 
 @compiled(inline=True)
@@ -182,65 +194,82 @@ def held_at_kinks(before: float, after: float, empty: float, pressure_slope: flo
     return ABOVE_KINK if after > 0.0 and pressure_slope == 0.0 else after
 
 
+@compiled(inline=True)
+def _step_of(fields: Array, i: int, j: int, moves: GridMotion, changes: Array) -> float:
+    """By how much the unknown of a cell changes with a correction of the velocities, see move_cells."""
+    first = fields.shape[1]
+    step = fields[i, j, first + BY_ITSELF] + moves.d_x * fields[i, j, first + 1] + moves.d_y * fields[i, j, first + 2]
+    if moves.by_ends:
+        far_x, far_y = moves.d_x + moves.more_x, moves.d_y + moves.more_y
+        step += far_x * fields[i, j, first + 3] + far_y * fields[i, j, first + 4]
+    for slot in range(changes.shape[0]):
+        step += fields[i, j, first + SIDES + slot] * changes[slot]
+    return float(step)
+
+
 @compiled()
 def move_cells(
-    ring: Array, cells: Array, w: Array, states: Array, fields: Array, grid: np.record, u_x: float, u_y: float,
-    g: float, changes: Array,
-) -> int:  # fmt: skip
-    """The unknowns w (m, k) follow a correction u of the velocity that the film feels and corrections of its channels'
-    pressures, changes (slots,); 1 if the film is to be asked again. Columns that rest follow the gap."""
+    films: Any, work: Any, n: int, grid: np.record, at: GridMotion, moves: GridMotion, changes: Array
+) -> int:
+    """The unknowns of field n follow a correction of the velocities that the film feels, the displacements of `moves`,
+    and corrections of its channels' pressures, changes (slots,); 1 if the film is to be asked again. at: how the film
+    was linearised. Columns that rest follow the gap. The rates are stored, too, if the film will balance then."""
+    ring, places, cells = films.ring[n], films.places[n], films.cells[n]
+    w, states, fields, empty = work.w[n], work.states[n], work.fields[n], grid.law[EMPTY]
+    if films.films[n].remembers and grid.balance == AHEAD:
+        s = grid.stage
+        _store_ahead(ring, places, cells, states, fields, at, moves, work.past[n], work.stage_oil[s, n],
+                     work.stage_flows[s, n])  # fmt: skip
     m, k = w.shape
-    empty = grid.law[EMPTY]
-    c, s = math.cos(grid.turn), math.sin(grid.turn)
-    x, y = c * u_x + s * u_y, c * u_y - s * u_x
     for i in range(m):
         if rests(states, i):
-            per_gap = g / (ring[GAP, i] + grid.x * ring[SIN, i] - grid.y * ring[COS, i])
-            grows = x * ring[SIN, i] - y * ring[COS, i]
+            near, rise = gap_along(ring[GAP, i], ring[SIN, i], ring[COS, i], at)
+            opens, rises = gap_along(0.0, ring[SIN, i], ring[COS, i], moves)
             for j in range(k):
-                before = w[i, j]
-                lacks = fields[i, j, k + BY_ITSELF] / cells[AREA, i, j] - states[FRACTION, i, j] * grows
-                w[i, j] += per_gap * lacks / states[FRACTION_SLOPE, i, j]
+                z, before = places[MIDDLES, j], w[i, j]
+                lacks = fields[i, j, k + BY_ITSELF] / cells[AREA, i, j] - states[FRACTION, i, j] * (opens + z * rises)
+                w[i, j] += at.g / (near + z * rise) * lacks / states[FRACTION_SLOPE, i, j]
                 w[i, j] = held_at_kinks(before, w[i, j], empty, 0.0)
             continue
         for j in range(k):
-            before = w[i, j]
-            w[i, j] += fields[i, j, k + BY_ITSELF] + x * fields[i, j, k + BY_X] + y * fields[i, j, k + BY_Y]
-            for slot in range(changes.shape[0]):
-                w[i, j] += fields[i, j, k + SIDES + slot] * changes[slot]
-            w[i, j] = held_at_kinks(before, w[i, j], empty, states[PRESSURE_SLOPE, i, j])
-    grid.x += g * x
-    grid.y += g * y
+            moved = w[i, j] + _step_of(fields, i, j, moves, changes)
+            w[i, j] = held_at_kinks(w[i, j], moved, empty, states[PRESSURE_SLOPE, i, j])
     return 1 if grid.balance == OPEN else 0
 
 
 @compiled()
-def store_ahead(
-    ring: Array, cells: Array, work: Any, f: int, u_x: float, u_y: float, g: float, rates: Array, flows: Array
-) -> None:
-    """Store the rates, see store_rates, of a film that will balance after move_cells, by its linear equations.
+def move_even(films: VolumeFilms, work: Any, f: int, u_x: float, u_y: float, g: float) -> int:
+    """move_film of forces.py for a film whose journal does not tilt."""
+    grid = work.grids[f]
+    c, s = math.cos(grid.turn), math.sin(grid.turn)
+    x, y = c * u_x + s * u_y, c * u_y - s * u_x
+    at, moves = level(grid.x, grid.y, 0.0, 0.0, 0.0, 0.0, g, 0.0), level(x, y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    unsettled = move_cells(films, work, f, grid, at, moves, work.changes[f])
+    grid.x += g * x
+    grid.y += g * y
+    return unsettled
+
+
+@compiled()
+def _store_ahead(
+    ring: Array, places: Array, cells: Array, states: Array, fields: Array, at: GridMotion, moves: GridMotion,
+    past: Array, rates: Array, flows: Array,
+) -> None:  # fmt: skip
+    """Store the rates, see store_rates, of a field that will balance after a correction, by its linear equations.
 
     Cells pass as much to each other as the neighbours take, so that no oil is lost. What the ends pass follows from
     what all cells gain; it contains the small change of the flow through openings.
     """
-    m, k = rates.shape
-    past, states, fields, grid = work.past[f], work.states[f], work.fields[f], work.grids[f]
-    c, s = math.cos(grid.turn), math.sin(grid.turn)
-    x, y = c * u_x + s * u_y, c * u_y - s * u_x
-    d_x, d_y = grid.x - g * x, grid.y - g * y
-    gained = 0.0
+    (m, k), g, gained = rates.shape, at.g, 0.0
     for i in range(m):
-        h = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
-        grows = g * (x * ring[SIN, i] - y * ring[COS, i])
-        if rests(states, i):
-            for j in range(k):
-                rates[i, j] = 0.0
-            continue
+        near, rise = gap_along(ring[GAP, i], ring[SIN, i], ring[COS, i], at)
+        opens, rises = gap_along(0.0, ring[SIN, i], ring[COS, i], moves)
         for j in range(k):
-            change = fields[i, j, k + BY_ITSELF] + x * fields[i, j, k + BY_X] + y * fields[i, j, k + BY_Y]
-            theta = states[FRACTION, i, j]
-            content = h * (theta + states[FRACTION_SLOPE, i, j] * change) + theta * grows
-            rates[i, j] = content / g - past[i, j] if cells[UNKNOWN, i, j] != 0.0 else 0.0
+            rates[i, j], z, theta = 0.0, places[MIDDLES, j], states[FRACTION, i, j]
+            if cells[UNKNOWN, i, j] != 0.0 and not rests(states, i):
+                change = states[FRACTION_SLOPE, i, j] * _step_of(fields, i, j, moves, fields[0, 0, :0])
+                content = (near + z * rise) * (theta + change) + theta * (g * (opens + z * rises))
+                rates[i, j] = content / g - past[i, j]
             gained += cells[AREA, i, j] * rates[i, j]
     flows[ENDS_NET] = flows[SUPPLY_NET] + flows[CHANNELS_NET] + flows[CREATED] - gained
 
@@ -266,21 +295,20 @@ def left_of_cells(grids: Records, smooth: float, moved: float) -> float:
 
 
 @compiled()
-def sheared(film: np.record, ring: Array, cells: Array, states: Array, d_x: float, d_y: float, factor: int) -> float:
-    """drag_integral of forces.py for a film with cells."""
+def sheared(films: Any, work: Any, n: int, at: GridMotion, factor: int) -> float:
+    """drag_integral of forces.py for field n with the journal where it is."""
     if factor == SIMPLE_FACTOR:  # (4.6): of a plain film
-        return 2.0 * math.pi / math.sqrt(max(1.0 - d_x * d_x - d_y * d_y, 1e-6))
-    m, k = states.shape[1], states.shape[2]
-    whole, weighed = 0.0, 0.0
-    for i in range(m):
-        h = max(ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i], 1e-3)
-        per_gap = stress_factor(h, film.roughness) / h
-        area, oil = 0.0, 0.0
-        for j in range(k):
-            area += cells[SHEARED, i, j]
-            oil += cells[SHEARED, i, j] * states[FRACTION, i, j]
-        whole += per_gap * area
-        weighed += per_gap * oil
+        return 2.0 * math.pi / math.sqrt(max(1.0 - at.d_x * at.d_x - at.d_y * at.d_y, 1e-6))
+    film, ring, places, cells, states = films.films[n], films.ring[n], films.places[n], films.cells[n], work.states[n]
+    whole, weighed, per_gap, tilts = 0.0, 0.0, 0.0, at.more_x != 0.0 or at.more_y != 0.0
+    for i in range(states.shape[1]):
+        near, rise = gap_along(ring[GAP, i], ring[SIN, i], ring[COS, i], at)
+        for j in range(states.shape[2]):
+            if j == 0 or tilts:
+                h = max(near + places[MIDDLES, j] * rise, 1e-3)
+                per_gap = stress_factor(h, film.roughness) / h
+            whole += per_gap * cells[SHEARED, i, j]
+            weighed += per_gap * cells[SHEARED, i, j] * states[FRACTION, i, j]
     if factor == LOCAL_FACTOR:
         return weighed
     return whole * oil_fraction(cells, states) if factor == GLOBAL_FACTOR else whole

@@ -95,7 +95,9 @@ def join(
     for q in range(count):
         f, slot = films.feed_holes[q].film, films.feed_holes[q].slot
         changes[f, slot] = answers[q, 0]
-        x, y = push_of_channel(films.films[f], films.ring[f], films.cells[f], states[f], fields[f], slot)
+        x, y = push_of_channel(
+            films.films[f], films.ring[f], films.cells[f], states[f], fields[f], slot, work.push
+        )
         c, s = math.cos(grids[f].turn), math.sin(grids[f].turn)
         push_x, push_y = c * x - s * y, s * x + c * y
         force[2 * f] += push_x * answers[q, 0]

@@ -13,9 +13,8 @@ from collections.abc import Callable
 from typing import Any
 
 from numba import types
-from numba.extending import overload
 
-from frbcli.compiled import AS_KERNELS
+from frbcli.compiled import Kernel, by_types, type_of
 from frbcli.film.cells.data import VolumeFilms
 from frbcli.film.cells.tilted.data import TiltedVolumes
 
@@ -25,20 +24,17 @@ _KINDS = {VolumeFilms: CELLS, TiltedVolumes: TILTED}
 
 def kind_of(films: Any) -> str:
     """The kind of films, or of a type of films that the compiler knows."""
-    if isinstance(films, types.BaseTuple) and not isinstance(films, types.BaseNamedTuple) and len(films) == 0:
+    if isinstance(films, tuple | types.BaseTuple) and len(films) == 0:
         return NONE
-    return _KINDS.get(getattr(films, "instance_class", type(films)), TABLES)
+    return _KINDS.get(type_of(films), TABLES)
 
 
-def by_kind(
-    question: Callable[..., Any], *, others: Callable[..., Any], inline: bool = False, **answers: Callable[..., Any]
-) -> None:
-    """A question that kernels ask the films, its argument `films`, is compiled as the answer of their kind: that under
-    the name of the kind, else `others`. inline: the answer is put into the functions that ask."""
-    at = list(inspect.signature(question).parameters).index("films")
-    how: dict[str, Any] = {"jit_options": AS_KERNELS} | ({"inline": "always"} if inline else {})
+def by_kind(inline: bool = False, **answers: Callable[..., Any]) -> Callable[[Kernel], Kernel]:
+    """Decorates a question that kernels ask the films, its argument `films`: it is compiled as the answer of their
+    kind, that under the name of the kind, else as it stands. inline: the answer is put into the functions that ask."""
 
-    def answer(*given: Any) -> Callable[..., Any]:
-        return answers.get(kind_of(given[at]), others)
+    def decorated(question: Kernel) -> Kernel:
+        at = list(inspect.signature(question).parameters).index("films")
+        return by_types(lambda *given: answers.get(kind_of(given[at])), inline)(question)
 
-    overload(question, strict=False, **how)(answer)
+    return decorated

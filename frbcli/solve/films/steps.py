@@ -29,16 +29,8 @@ class NoCells(NamedTuple):
 
 
 class Scaled(NamedTuple):
-    """NoCells of tabulated films in a machine with heat, and scales (F,) of their tables, see forces.py."""
-
-    stage_oil: Array
-    grids: Records
-    cross: Array
-    scales: Array
-
-
-class Supplied(NamedTuple):
-    """Scaled of films whose supply pressure changes: scales and forces follow shares (F,) of it, see inputs.py."""
+    """NoCells of tabulated films in a machine with heat or with a supply whose pressure changes: scales (F,) of their
+    tables, see forces.py, and shares (F,) of the pressures, see inputs.py."""
 
     stage_oil: Array
     grids: Records
@@ -49,7 +41,7 @@ class Supplied(NamedTuple):
 
 def make_work(
     films: Any, wet: Array, stages: int, scales: Array | None = None, shares: Array | None = None
-) -> Work | TiltedWork | NoCells | Scaled | Supplied:
+) -> Work | TiltedWork | NoCells | Scaled:
     """Scratch for films and their state wet (WET, F, m, k). scales: of tabulated films with heat; shares: of their
     supply pressure, where it changes, which the scales then follow, too."""
     kind = kind_of(films)
@@ -60,14 +52,16 @@ def make_work(
     none = NoCells(np.zeros((stages, 0, 0, 0)), np.zeros(0, GRID), np.zeros((0, 0)))
     if scales is None:
         return none
-    return Scaled(*none, scales) if shares is None else Supplied(*none, scales, shares)
+    return Scaled(*none, scales, np.ones_like(scales) if shares is None else shares)
 
 
+@by_kind(inline=True, cells=lambda films: CELL_LIMIT, tilted=lambda films: CELL_LIMIT)
 def most_iterations(films: Any) -> int:
     """Limit of the iterations of Newton's method in a stage."""
-    raise NotImplementedError
+    return NEWTON_LIMIT
 
 
+@by_kind(cells=begin_cells, tilted=begin_cells)
 def begin_stage(
     films: Any,
     work: Work,
@@ -82,53 +76,23 @@ def begin_stage(
 ) -> None:
     """Prepare the films for stage s: past, and guesses of w and of the filling of openings. ahead, lag: how far the
     stage and the one before it lie from the start of the step, over the step before and over this one."""
-    raise NotImplementedError
 
 
+@by_kind(cells=filling_error, tilted=filling_error)
 def film_error(films: Any, work: Work, flows: Array, weights: Array, defect: Array, step: float) -> float:
     """Embedded error of what the films have of their own: the filling of openings with a flow-limited supply, over a
     full line. weights, defect: of the method."""
-    raise NotImplementedError
+    return 0.0
 
 
+@by_kind(cells=accept_cells, tilted=accept_cells)
 def accept_films(films: Any, work: Work, wet: Array, flows: Array, weights: Array, step: float) -> None:
     """The step is done: the films' state moves on. flows: (2, F, FLOWS) oil that has passed so far, and passes now."""
-    raise NotImplementedError
 
 
-def write_oil(films: Any, work: Work, out_oil: Array, first: int, last: int) -> None:
-    """out_oil (rows, F), rows from first up to last: the mean oil fraction (4.46) at the end of an accepted step."""
-    raise NotImplementedError
-
-
-by_kind(
-    most_iterations,
-    inline=True,
-    others=lambda films: NEWTON_LIMIT,
-    cells=lambda films: CELL_LIMIT,
-    tilted=lambda films: CELL_LIMIT,
-)
-by_kind(
-    begin_stage,
-    others=lambda films, work, wet, flows, weights, s, step, g, ahead, lag: None,
-    cells=begin_cells,
-    tilted=begin_cells,
-)
-by_kind(
-    film_error,
-    others=lambda films, work, flows, weights, defect, step: 0.0,
-    cells=filling_error,
-    tilted=filling_error,
-)
-by_kind(
-    accept_films,
-    others=lambda films, work, wet, flows, weights, step: None,
-    cells=accept_cells,
-    tilted=accept_cells,
-)
-by_kind(
-    write_oil,
-    others=lambda films, work, out_oil, first, last: None,
+@by_kind(
     cells=write_cell_oil,
     tilted=lambda films, work, out_oil, first, last: write_land_oil(films, work, out_oil, first, last),
 )
+def write_oil(films: Any, work: Work, out_oil: Array, first: int, last: int) -> None:
+    """out_oil (rows, F), rows from first up to last: the mean oil fraction (4.46) at the end of an accepted step."""

@@ -13,41 +13,12 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
-from frbcli.film.cavitation.compiled import EMPTY
-from frbcli.film.cells.balance.balances import ENDS_NET, SUPPLY_NET
-from frbcli.film.cells.balance.newton_step import damp, imbalance
-from frbcli.film.cells.balance.states import (
-    FRACTION,
-    FRACTION_SLOPE,
-    PRESSURE_SLOPE,
-    cell_states,
-    follow_law,
-    hold,
-)
-from frbcli.film.cells.block_cyclic import solve_ring_at
-from frbcli.film.cells.data import AREA, COS, GAP, SHEARED, SIN, UNKNOWN, Records
-from frbcli.film.cells.gas.carry import store_gas_rates
-from frbcli.film.cells.tilted.data import MIDDLES, TiltedVolumes
-from frbcli.film.cells.tilted.gas import take_land_gas_along
-from frbcli.film.cells.tilted.kernel import ALL_SIDES, BY_ENDS, BY_ITSELF, EndsMotion, gap_at_ends, land_balances
-from frbcli.film.cells.tilted.loads import land_loads
+from frbcli.film.cells.balance.states import follow_law
+from frbcli.film.cells.data import ALL_SIDES, Records
+from frbcli.film.cells.tilted.data import TiltedVolumes
+from frbcli.film.cells.tilted.motion import GridMotion
 from frbcli.solve.films.cell_steps import cell_arrays, oil_fraction
-from frbcli.solve.films.cells import (
-    AHEAD,
-    CELL_SHARE,
-    DAMPING,
-    GAINS_CARRIED,
-    HELD,
-    LOCAL_FACTOR,
-    LOOSE_SHARE,
-    NEWTON_GAINS,
-    OPEN,
-    PLAIN,
-    SLOW,
-    SLOWEST,
-    SOLVED,
-    held_at_kinks,
-)
+from frbcli.solve.films.cells import LOCAL_FACTOR, NO_FACTOR, SLOWEST, SOLVED, move_cells, sheared, solve_cells
 from frbcli.solve.films.fillings import GRID
 
 ENDS = 2  # of a bearing, each of which the loop takes for a journal
@@ -57,7 +28,8 @@ class TiltedWork(NamedTuple):
     """Scratch of the time loop for F films of L lands: as Work in cell_steps.py, but of lands; grids (2 F,), of a film
     one after the other. places, rates, moves: (F, 4) coordinates of the journals in the directions of the grids, see
     tilted/data.py, their rates, and their last corrections; omega (F,); push (4, m, k), loads (L, 4), slopes (L, 4, 4),
-    unused (4, 4), see land_loads; force (F, 4), by_rate (F, 4, 4) of films; cross (4 F, 4 F)."""
+    unused (4, 4), see film_loads; force (F, 4), by_rate (F, 4, 4) of films; cross (4 F, 4 F); channel and changes of no
+    channels."""
 
     states: Array
     stencil: Array
@@ -83,6 +55,8 @@ class TiltedWork(NamedTuple):
     unused: Array
     force: Array
     by_rate: Array
+    channel: Array
+    changes: Array
 
 
 def make_tilted_work(films: TiltedVolumes, wet: Array, stages: int) -> TiltedWork:
@@ -105,6 +79,8 @@ def make_tilted_work(films: TiltedVolumes, wet: Array, stages: int) -> TiltedWor
         np.zeros((4, 4)),
         np.zeros((count, 4)),
         np.zeros((count, 4, 4)),
+        np.zeros((0, m, k)),
+        np.zeros(0),
     )
 
 
@@ -123,20 +99,11 @@ def meet_ends(work: Any, x_0: Array, u: Array, omega: Array, clearances: Array, 
             work.rates[f, x], work.rates[f, x + 1] = cosine * v_x + sine * v_y, cosine * v_y - sine * v_x
 
 
-@compiled()
-def _store_rates(
-    ring: Array, cells: Array, places: Array, states: Array, d: Array, g: float, past: Array, fields: Array,
-    rates: Array,
-) -> None:  # fmt: skip
-    """store_rates of newton_step.py."""
-    m, k = rates.shape
-    for i in range(m):
-        near, rise = gap_at_ends(ring[GAP, i], ring[SIN, i], ring[COS, i], d)
-        for j in range(k):
-            rates[i, j] = 0.0
-            if cells[UNKNOWN, i, j] != 0.0:
-                h = near + places[MIDDLES, j] * rise
-                rates[i, j] = h * states[FRACTION, i, j] / g - past[i, j] + fields[i, j, k] / cells[AREA, i, j]
+@compiled(inline=True)
+def _between(d: Array, v: Array, omega: float, g: float, rate: float) -> GridMotion:
+    """The motion of a journal that tilts, from its coordinates (4,), see tilted/data.py, and their rates."""
+    more_x, more_y, more_v_x, more_v_y = d[2] - d[0], d[3] - d[1], v[2] - v[0], v[3] - v[1]
+    return GridMotion(d[0], d[1], omega, v[0], v[1], 0.0, g, rate, more_x, more_y, more_v_x, more_v_y, True)
 
 
 @compiled()
@@ -154,63 +121,14 @@ def _follow(film: np.record, d: Array, v: Array, omega: float, spin: float, law:
 
 
 @compiled()
-def _stray_gas(films: TiltedVolumes, work: Any, land: int, motion: EndsMotion, law: Array, drop: float) -> float:
-    """stray_gas of cells.py."""
-    film, ring, cells, along = films.films[land], films.ring[land], films.cells[land], films.places[land]
-    states, past, paths = work.states[land], work.gas_past[land], work.gas_paths[land]
-    stray = take_land_gas_along(film, ring, cells, along, states, motion, past, paths)
-    cell_states(film, cells, law, drop, work.w[land], states)
-    return float(stray / film.gas_content)
-
-
-@compiled()
 def _solve_land(films: TiltedVolumes, work: Any, land: int, f: int, g: float, s: int, iteration: int) -> None:
     """cell_response of cells.py: loads and slopes of a land of film f, in the directions of its grid."""
-    film, ring, cells, along = films.films[land], films.ring[land], films.cells[land], films.places[land]
-    w, past, states, fields = work.w[land], work.past[land], work.states[land], work.fields[land]
-    d, v, stencil, grid = work.places[f], work.rates[f], work.stencil, work.grids[ENDS * f + land - films.first[f]]
-    loads, slopes, flows, remembers = work.loads[land], work.slopes[land], work.stage_flows[s, land], film.remembers
+    film, d, v, grid = films.films[land], work.places[f], work.rates[f], work.grids[ENDS * f + land - films.first[f]]
     omega = work.omega[f] - 2.0 * grid.speed
-    m, k = w.shape
-    grid.stage = s
     if iteration == 0:
         _follow(film, d, v, work.omega[f], grid.speed, grid.law)
-    drop = film.centrifugal * grid.speed * grid.speed
-    cell_states(film, cells, grid.law, drop, w, states)
-    if iteration == 0:
-        hold(states, omega)
-    motion = EndsMotion(d, v, omega, g, 1.0 / g if remembers else 0.0)
-    stray = _stray_gas(films, work, land, motion, grid.law, drop) if film.carries_gas else 0.0
-    land_balances(film, ring, cells, along, states, motion, past, stencil, fields, flows)
-    mean, largest = imbalance(cells, fields)
-    pace = _pace(omega, v)
-    left = max(mean, (CELL_SHARE if remembers else LOOSE_SHARE) * largest) / (film.settled * pace)
-    left = max(left, stray / film.settled)
-    balanced = left < 1.0
-    if balanced and remembers:
-        _store_rates(ring, cells, along, states, d, g, past, fields, work.stage_oil[s, land])
-        if film.carries_gas:
-            store_gas_rates(film, cells, states, work.gas_paths[land], work.stage_gas[s, land], flows)
-    if balanced and iteration > 0 and grid.ratio < SLOW:
-        grid.balance = HELD
-        for i in range(m):  # the journal takes the film along as it did before
-            for j in range(k):
-                fields[i, j, k + BY_ITSELF] = 0.0
-                for a in range(4):
-                    fields[i, j, k + BY_ENDS + a] = fields[i, j, a]
-        land_loads(film, ring, cells, along, states, fields, work.push, loads, work.unused)
-        return
-    alone = iteration < PLAIN and not film.carries_gas  # gas has to balance as it is
-    soon = left < (GAINS_CARRIED if remembers else NEWTON_GAINS) and alone
-    grid.balance = SOLVED if balanced else AHEAD if soon else OPEN
-    if iteration >= PLAIN:
-        damp(cells, pace * DAMPING ** (iteration - PLAIN), stencil)
-    solve_ring_at(film.solver_at, stencil, work.blocks, fields)
-    land_loads(film, ring, cells, along, states, fields, work.push, loads, slopes)
-    for i in range(m):
-        for j in range(k):
-            for a in range(4):
-                fields[i, j, a] = fields[i, j, k + BY_ENDS + a]
+    motion = _between(d, v, omega, g, 1.0 / g if film.remembers else 0.0)
+    solve_cells(films, work, land, grid, motion, s, iteration, _pace(omega, v))
 
 
 @compiled()
@@ -264,35 +182,6 @@ def join_ends(work: Any, clearances: Array) -> None:
 
 
 @compiled()
-def _step_of(fields: Array, i: int, j: int, u: Array) -> float:
-    """By how much the unknown of a cell changes with a correction u (4,) of the velocities at the ends."""
-    first = fields.shape[1]
-    step = fields[i, j, first + BY_ITSELF]
-    for a in range(4):
-        step += u[a] * fields[i, j, first + BY_ENDS + a]
-    return float(step)
-
-
-@compiled()
-def _store_ahead(films: TiltedVolumes, work: Any, land: int, f: int, g: float, s: int) -> None:
-    """store_ahead of cells.py."""
-    ring, cells, along, u = films.ring[land], films.cells[land], films.places[land], work.moves[f]
-    past, states, fields, d = work.past[land], work.states[land], work.fields[land], work.places[f]
-    rates, flows, gained = work.stage_oil[s, land], work.stage_flows[s, land], 0.0
-    m, k = rates.shape
-    for i in range(m):
-        near, rise = gap_at_ends(ring[GAP, i], ring[SIN, i], ring[COS, i], d)
-        opens, rises = gap_at_ends(0.0, ring[SIN, i], ring[COS, i], u)
-        for j in range(k):
-            z, theta = along[MIDDLES, j], states[FRACTION, i, j]
-            h, grows = near + z * rise, g * (opens + z * rises)
-            content = h * (theta + states[FRACTION_SLOPE, i, j] * _step_of(fields, i, j, u)) + theta * grows
-            rates[i, j] = content / g - past[i, j] if cells[UNKNOWN, i, j] != 0.0 else 0.0
-            gained += cells[AREA, i, j] * rates[i, j]
-    flows[ENDS_NET] = flows[SUPPLY_NET] - gained
-
-
-@compiled()
 def move_end(films: TiltedVolumes, work: Any, end: int, u_x: float, u_y: float, g: float) -> int:
     """move_film of forces.py: with the second end it is known how the film moves, and all its lands follow."""
     f, x = end // ENDS, 2 * (end % ENDS)
@@ -301,17 +190,10 @@ def move_end(films: TiltedVolumes, work: Any, end: int, u_x: float, u_y: float, 
     u[x], u[x + 1] = c * u_x + s * u_y, c * u_y - s * u_x
     if x == 0:
         return 0
+    at, moves = _between(work.places[f], u, 0.0, g, 0.0), _between(u, u, 0.0, 0.0, 0.0)
     for land in range(films.first[f], films.first[f + 1]):
-        w, states, fields = work.w[land], work.states[land], work.fields[land]
         grid = work.grids[ENDS * f + land - films.first[f]]
-        if films.films[land].remembers and grid.balance == AHEAD:
-            _store_ahead(films, work, land, f, g, grid.stage)
-        for i in range(w.shape[0]):
-            for j in range(w.shape[1]):
-                moved = w[i, j] + _step_of(fields, i, j, u)
-                w[i, j] = held_at_kinks(w[i, j], moved, grid.law[EMPTY], states[PRESSURE_SLOPE, i, j])
-        if grid.balance == OPEN:
-            unsettled = 1
+        unsettled = max(unsettled, move_cells(films, work, land, grid, at, moves, work.changes))
     for a in range(4):
         work.places[f, a] += g * u[a]
     return unsettled
@@ -319,16 +201,12 @@ def move_end(films: TiltedVolumes, work: Any, end: int, u_x: float, u_y: float, 
 
 @compiled()
 def tilted_sheared(films: TiltedVolumes, work: Any, end: int, factor: int) -> float:
-    """drag_integral of forces.py, half of the bearing's for each end."""
+    """drag_integral of forces.py, half of the bearing's for each end; oil that is missing counts where it is missing,
+    or not at all."""
     f, mean = end // ENDS, 0.0
-    lands, d = films.first[f + 1] - films.first[f], work.places[f]
+    lands, at = films.first[f + 1] - films.first[f], _between(work.places[f], work.places[f], 0.0, 0.0, 0.0)
     for land in range(films.first[f], films.first[f + 1]):
-        ring, cells, along, states = films.ring[land], films.cells[land], films.places[land], work.states[land]
-        for i in range(states.shape[1]):
-            near, rise = gap_at_ends(ring[GAP, i], ring[SIN, i], ring[COS, i], d)
-            for j in range(states.shape[2]):
-                oil = states[FRACTION, i, j] if factor == LOCAL_FACTOR else 1.0
-                mean += oil * cells[SHEARED, i, j] / max(near + along[MIDDLES, j] * rise, 1e-3)
+        mean += sheared(films, work, land, at, factor if factor == LOCAL_FACTOR else NO_FACTOR)
     return float(mean / (ENDS * lands))
 
 

@@ -6,36 +6,41 @@ from __future__ import annotations
 
 from typing import Any
 
-from numba import types
-from numba.extending import overload
-
 from frbcli.arrays import Array
-from frbcli.compiled import AS_KERNELS, compiled
+from frbcli.compiled import compiled, of_several
 from frbcli.film.cells.balance.side_flow import side_flow
 from frbcli.film.cells.cavity_edge import CellEnds
 from frbcli.film.cells.data import GIVEN_PRESSURE, OIL, VolumeFilms
+from frbcli.film.cells.tilted.motion import level
 from frbcli.film.rectangles.end_flow import end_flow
 from frbcli.solve.films.cell_steps import oil_fraction
-from frbcli.solve.films.kinds import CELLS, by_kind, kind_of
+from frbcli.solve.films.kinds import by_kind
 from frbcli.thermal.exchange import CLEARANCE, ETA, SCALE
 
+_flow_of = of_several(end_flow, inline=True)
 
+
+def _leaving_cells(ends, films, work, f, d_x, d_y, v_x, v_y, total, scale):  # type: ignore[no-untyped-def]
+    return ends.units[f] * side_flow(
+        films.films[f], films.ring[f], films.places[f], films.cells[f], work.states[f],
+        level(work.grids[f].x, work.grids[f].y, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        ends.far_open[f] != 0,
+    )  # fmt: skip
+
+
+@by_kind(inline=True, cells=_leaving_cells)
 def leaving(
     ends: Any, films: Any, work: Any, f: int, d_x: float, d_y: float, v_x: float, v_y: float, total: float,
     scale: float,
-) -> float:  # fmt: skip
+) -> Any:  # fmt: skip
     """Flow through the ends of film f over its clearance, m^2/s, see end_flow; total: omega_J + omega_S."""
-    raise NotImplementedError
+    return _flow_of(ends, f, d_x, d_y, v_x + 0.5 * total * d_y, v_y - 0.5 * total * d_x, scale)
 
 
+@by_kind(inline=True, cells=lambda films, work, f: oil_fraction(films.cells[f], work.states[f]))
 def oil_share(films: Any, work: Any, f: int) -> float:
     """Share of the gap of film f that is oil."""
-    raise NotImplementedError
-
-
-def keep_oil(films: Any, wet: Any, f: int, narrower: float) -> None:
-    """The oil of film f and its rate, over the clearance, times `narrower`: the clearance before over that now."""
-    raise NotImplementedError
+    return 1.0
 
 
 @compiled()
@@ -48,45 +53,9 @@ def _scale_oil(wet: Array, f: int, factor: float) -> None:
                     wet[layer, f, i, j] *= factor
 
 
-def set_scale(ends: Any, films: Any, f: int, now: Array, reference: float) -> None:
-    """Finite-volume films <- pressures and law of film f at its scale; tabulated ones are asked for scaled
-    velocities."""
-    raise NotImplementedError
-
-
-@overload(leaving, jit_options=AS_KERNELS, inline="always")
-def _leaving(ends, films, work, f, d_x, d_y, v_x, v_y, total, scale):  # type: ignore[no-untyped-def]
-    if kind_of(films) == CELLS:
-        return lambda ends, films, work, f, d_x, d_y, v_x, v_y, total, scale: (
-            ends.units[f]
-            * side_flow(
-                films.films[f], films.ring[f], films.cells[f], work.states[f],
-                work.grids[f].x, work.grids[f].y, ends.far_open[f] != 0,
-            )
-        )  # fmt: skip
-    return lambda ends, films, work, f, d_x, d_y, v_x, v_y, total, scale: _flow_of(
-        ends, f, d_x, d_y, v_x + 0.5 * total * d_y, v_y - 0.5 * total * d_x, scale
-    )
-
-
-def _flow_of(ends: Any, f: int, d_x: float, d_y: float, w_x: float, w_y: float, scale: float) -> float:
-    """end_flow of film f of those whose outflow follows from w."""
-    raise NotImplementedError
-
-
-@overload(_flow_of, jit_options=AS_KERNELS, inline="always")
-def _flow_of_one(ends, f, d_x, d_y, w_x, w_y, scale):  # type: ignore[no-untyped-def]
-    if isinstance(ends, types.UniTuple):
-        return lambda ends, f, d_x, d_y, w_x, w_y, scale: end_flow(ends[f], d_x, d_y, w_x, w_y, scale)
-    if len(ends) == 1:
-        return lambda ends, f, d_x, d_y, w_x, w_y, scale: end_flow(ends[0], d_x, d_y, w_x, w_y, scale)
-
-    def several(ends, f, d_x, d_y, w_x, w_y, scale):  # type: ignore[no-untyped-def]
-        if f == 0:
-            return end_flow(ends[0], d_x, d_y, w_x, w_y, scale)
-        return _flow_of(ends[1:], f - 1, d_x, d_y, w_x, w_y, scale)
-
-    return several
+@by_kind(inline=True, cells=lambda films, wet, f, narrower: _scale_oil(wet, f, narrower))
+def keep_oil(films: Any, wet: Any, f: int, narrower: float) -> None:
+    """The oil of film f and its rate, over the clearance, times `narrower`: the clearance before over that now."""
 
 
 @compiled()
@@ -118,21 +87,7 @@ def _scale_cells(ends: CellEnds, films: VolumeFilms, f: int, now: Array, referen
             channel.resistance = ends.resistance[k] * now[ETA, f]
 
 
-by_kind(
-    keep_oil,
-    inline=True,
-    others=lambda films, wet, f, narrower: None,
-    cells=lambda films, wet, f, narrower: _scale_oil(wet, f, narrower),
-)
-by_kind(
-    oil_share,
-    inline=True,
-    others=lambda films, work, f: 1.0,
-    cells=lambda films, work, f: oil_fraction(films.cells[f], work.states[f]),
-)
-by_kind(
-    set_scale,
-    inline=True,
-    others=lambda ends, films, f, now, reference: None,
-    cells=lambda ends, films, f, now, reference: _scale_cells(ends, films, f, now, reference),
-)
+@by_kind(inline=True, cells=lambda ends, films, f, now, reference: _scale_cells(ends, films, f, now, reference))
+def set_scale(ends: Any, films: Any, f: int, now: Array, reference: float) -> None:
+    """Finite-volume films <- pressures and law of film f at its scale; tabulated ones are asked for scaled
+    velocities."""

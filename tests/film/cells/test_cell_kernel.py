@@ -43,12 +43,11 @@ from frbcli.film.cells.block_cyclic import (
     ring_solver,
     solve_ring_at,
 )
-from frbcli.film.cells.data import SIDES, volume_films
+from frbcli.film.cells.data import ALL_SIDES, SIDES, volume_films
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.tilted.kernel import ALL_SIDES
 from frbcli.film.gap import Hole, Section, gap_height, gap_rate
 
 LAWS: dict[str, Law] = {
@@ -195,7 +194,7 @@ def test_balances_are_the_plain_ones(law: Law, omega: float, roughness: float, e
     residual, plain = balance.residual(film.cells(w), Storage(rate * gap, past))
     data = volume_films([film])
     states, stencil, _, fields, flows = arrays()
-    parts = data.films[0], data.ring[0], data.width[0], data.cells[0]
+    parts = data.films[0], data.ring[0], data.places[0], data.cells[0]
     numbers = np.empty(LAW_NUMBERS)
     follow_law(parts[0], *motion.d, 0.0, 0.0, omega, numbers)
     cell_states(parts[0], parts[3], numbers, 0.0, w, states)

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from frbcli.film.cavitation.conditions import HalfSommerfeld
-from frbcli.film.cells.balance.clipped import clipped_push
 from frbcli.film.cells.balance.plain_clipped import clipped_means
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, STATES
 from frbcli.film.cells.data import SIDES, volume_films
@@ -17,6 +16,7 @@ from frbcli.film.cells.loads import force
 from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.cells.tilted.loads import film_loads
 from frbcli.film.gap import Section
 
 TURN = 2.0 * math.pi
@@ -77,13 +77,15 @@ def test_kernel_is_the_plain_one_and_has_its_derivatives() -> None:
     def push(own: np.ndarray) -> tuple[float, ...]:
         changed = fields.copy()
         changed[:, :, k] = own
-        return clipped_push(data.films[0], data.ring[0], data.cells[0], states, changed, k + 1, k + 2)
+        scratch, loads, slopes = np.empty((4, m, k)), np.empty(2), np.empty((2, 2))
+        parts = data.films[0], data.ring[0], data.places[0], data.cells[0]
+        film_loads(*parts, states, changed, scratch, loads, slopes)
+        return *loads, *slopes.T.ravel()
 
     f_x, f_y, *by = push(fields[:, :, k])
     pressure = states[PRESSURE] + states[PRESSURE_SLOPE] * fields[:, :, k]
     expected = force(film, cavity + clipped_means(pressure - cavity))
-    scale = data.films[0].force_scale
-    assert (scale * f_x, scale * f_y) == pytest.approx(expected, rel=1e-12)
+    assert (f_x, f_y) == pytest.approx(expected, rel=1e-12)
     step = 1e-6
     for layer, slopes in ((k + 1, by[:2]), (k + 2, by[2:])):
         after, before = (push(fields[:, :, k] + sign * step * fields[:, :, layer]) for sign in (1.0, -1.0))

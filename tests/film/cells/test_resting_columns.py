@@ -17,7 +17,7 @@ from frbcli.film.gap import gap_height
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.films.cell_steps import Work
-from frbcli.solve.films.cells import HELD, cell_response, move_cells
+from frbcli.solve.films.cells import HELD, cell_response, move_even
 from frbcli.solve.films.steps import make_work
 from frbcli.solve.stage.equations import FilmMotion
 
@@ -57,9 +57,7 @@ def ask(system: System, work: Any, iteration: int) -> None:
 
 
 def move(system: System, work: Any) -> int:
-    ring: Any = system.films.loop.ring  # type: ignore[union-attr]
-    given = system.films.loop.cells[0], work.w[0], work.states[0], work.fields[0], work.grids[0]  # type: ignore[union-attr]
-    return move_cells(ring[0], *given, 0.0, 0.0, G, np.zeros(0))
+    return move_even(system.films.loop, work, 0, 0.0, 0.0, G)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("cells", [5, 7])  # an elimination made for this length, and the one for all others

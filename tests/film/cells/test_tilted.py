@@ -15,14 +15,13 @@ from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balance.balances import FLOWS, GridMotion, balances
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, STATES, cell_states, follow_law
 from frbcli.film.cells.block_cyclic import ENTRIES
-from frbcli.film.cells.data import SIDES, volume_films
+from frbcli.film.cells.data import ALL_SIDES, SIDES, volume_films
 from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure
 from frbcli.film.cells.loads import FilmLoads, loads
 from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.tilted.balances import tilted_balances
-from frbcli.film.cells.tilted.data import land_places
+from frbcli.film.cells.tilted.motion import seen_by_grid
 from frbcli.film.cells.tilted.steady_force import lands, summed
 from frbcli.film.gap import Hole, Section
 
@@ -52,26 +51,28 @@ def six(found: FilmLoads) -> np.ndarray:
 
 @pytest.mark.parametrize("ends", [("oil-bath", "groove"), ("free-to-air", "oil-bath")])
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
-def test_balances_without_tilt_are_the_compiled_ones(law: Law, ends: tuple[str, str]) -> None:
+def test_derivatives_by_both_ends_sum_up_to_those_by_the_velocity(law: Law, ends: tuple[str, str]) -> None:
     section = Section(0.0125, 0.01, 0.02, 40e-6, 0.01, 1e5, 0.9e5, 2, *ends, 0.7e5, holes=HOLES)
     grid = volume_grid(section, np.linspace(0, 2 * np.pi, M + 1), np.linspace(0, 1, K + 1))
     film, motion = VolumeFilm(section, grid, law, 500.0), Motion((0.3, -0.5), (0.0, 0.0), 300.0)
     data, random, numbers = volume_films([film]), np.random.default_rng(2), np.empty(LAW_NUMBERS)
     w, past = random.uniform(-0.6, 0.6, (M, K)), random.uniform(0.0, 3e3, (M, K))
-    parts = data.films[0], data.ring[0], data.width[0], data.cells[0]
+    parts = data.films[0], data.ring[0], data.places[0], data.cells[0]
     states = np.zeros((STATES, M, K))
     follow_law(parts[0], *motion.d, 0.0, 0.0, motion.omega, numbers)
     cell_states(parts[0], parts[3], numbers, 0.0, w, states)
     states[BEFORE_UPSTREAM] = random.uniform(0.0, 1.0, (M, K))
     stencil, right, flows = np.zeros((ENTRIES, M, K)), np.zeros((M, K, K + SIDES)), np.zeros(FLOWS)
-    own_stencil, own_flows = np.zeros((ENTRIES, M, K)), np.zeros(FLOWS)
+    own_stencil, own, own_flows = np.zeros((ENTRIES, M, K)), np.zeros((M, K, K + ALL_SIDES)), np.zeros(FLOWS)
     for g in (0.0, 2.0):
         balances(*parts, states, GridMotion(*motion.d, motion.omega, g=g), past, stencil, right, flows)
-        left = tilted_balances(parts, land_places(grid), motion, states, past, own_stencil, own_flows, g)
+        balances(*parts, states, seen_by_grid(motion, g, by_ends=True), past, own_stencil, own, own_flows)
+        sides = own[:, :, [K, K + 1, K + 2]]
+        sides[:, :, 1:] += own[:, :, K + 3 :]
         pairs = {"stencil": (own_stencil, stencil), "flows": (own_flows, flows)}
-        pairs |= {f"side {i}": (left[:, :, i], -right[:, :, K + i]) for i in range(SIDES)}
-        for name, (own, compiled) in pairs.items():
-            assert np.allclose(own, compiled, rtol=1e-10, atol=1e-11 * np.abs(compiled).max()), name
+        pairs |= {f"side {i}": (sides[:, :, i], right[:, :, K + i]) for i in range(SIDES)}
+        for name, (found, expected) in pairs.items():
+            assert np.allclose(found, expected, rtol=1e-10, atol=1e-11 * np.abs(expected).max()), name
 
 
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)

@@ -6,6 +6,7 @@ from dataclasses import astuple, replace
 
 import numpy as np
 import pytest
+from flows import oil_paths
 from volume_films import ROTATION, section_of
 
 from frbcli.film.cavitation.bubbly import Bubbly
@@ -24,7 +25,7 @@ from frbcli.film.cells.balance.states import (
 )
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
-from frbcli.film.cells.gas.balance import Carried, KeptGas, OilPaths, brought, oil_paths
+from frbcli.film.cells.gas.balance import Carried, KeptGas, OilPaths, brought
 from frbcli.film.cells.gas.carry import PATHS, store_gas_rates, take_gas_along
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
@@ -109,7 +110,7 @@ def test_gas_at_given_pressures_settles_where_they_ask_for_more_gas_than_there_i
     for _ in range(30):
         cell_states(data.films[0], data.cells[0], numbers, 0.0, w, states)
         at = GridMotion(*motion.d, omega, rate=rate)
-        off.append(take_gas_along(data.films[0], data.ring[0], data.width[0], data.cells[0], states, at, past, paths))
+        off.append(take_gas_along(data.films[0], data.ring[0], data.places[0], data.cells[0], states, at, past, paths))
     free = ~film.grid.fixed
     assert np.any(states[CARRIED_GAS][free] == law.gas_content)
     assert np.all(states[FREE_GAS] <= law.gas_content)
@@ -129,7 +130,7 @@ def test_rates_of_a_step_are_what_it_stores_and_their_flows_add_up() -> None:
     assert solution.gas is not None
     data, rates, flows = volume_films([film]), np.zeros(film.grid.shape), np.zeros(FLOWS)
     states, paths = np.zeros((STATES, *rates.shape)), np.zeros((PATHS, *rates.shape))
-    film_cells = data.films[0], data.ring[0], data.width[0], data.cells[0]
+    film_cells = data.films[0], data.ring[0], data.places[0], data.cells[0]
     states[:CARRIED_GAS] = astuple(solution.state)
     states[CARRIED_GAS], states[TURNOVER] = solution.gas.carried
     states[FREE_GAS], states[BEFORE_UPSTREAM] = solution.gas.free, solution.before

@@ -85,7 +85,7 @@ def parts_of(ends: Ends, along: bool, omega: float) -> tuple[VolumeFilm, tuple[A
     grid = volume_grid(section, np.linspace(0, 2 * np.pi, M + 1), np.linspace(0, 1, K + 1))
     film = VolumeFilm(section, grid, TwoPhase(0.9), 500.0)
     data, numbers, states = volume_films([film]), np.empty(LAW_NUMBERS), np.zeros((STATES, M, K))
-    parts = data.films[0], data.ring[0], data.width[0], data.cells[0]
+    parts = data.films[0], data.ring[0], data.places[0], data.cells[0]
     follow_law(parts[0], 0.3, -0.5, 0.0, 0.0, omega, numbers)
     w = np.random.default_rng(2).uniform(-1.2, 0.6, (M, K))
     w[3:9] = -0.4  # cells that hold the same: chords have no slope
@@ -233,7 +233,7 @@ def test_derivative_by_the_speed_is_that_of_the_balances() -> None:
     """Of the sum of both speeds, which turning rings and sheets ask for, against the plain ones."""
     film, motion = film_of(groove_section(), TwoPhase(0.9), (24, 6)), turning(0.18, -0.06)
     solution, data = FilmSolver(film).steady(motion), volume_films([film])
-    parts = data.films[0], data.ring[0], data.width[0], data.cells[0]
+    parts = data.films[0], data.ring[0], data.places[0], data.cells[0]
     states, numbers = np.zeros((STATES, 24, 6)), np.empty(LAW_NUMBERS)
     follow_law(parts[0], *motion.d, 0.0, 0.0, OMEGA, numbers)
     cell_states(parts[0], parts[3], numbers, 0.0, solution.w, states)

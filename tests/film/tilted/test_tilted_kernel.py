@@ -6,22 +6,21 @@ from dataclasses import astuple, replace
 
 import numpy as np
 import pytest
+from flows import oil_paths, path_layers
 
 from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import CellState, Law
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.balance.balances import ENDS_NET, FLOWS, SUPPLY_NET
+from frbcli.film.cells.balance.balances import COLUMNS, ENDS_NET, FLOWS, SUPPLY_NET, GridMotion, balances
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, STATES, before_upstream
 from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
+from frbcli.film.cells.data import ALL_SIDES, BY_ENDS
 from frbcli.film.cells.film import VolumeFilm, gap_height
-from frbcli.film.cells.gas.balance import oil_paths, path_layers
-from frbcli.film.cells.gas.carry import BACKWARD, DOWNWARD, GIVEN, KEPT, ONWARD, OUT, PATHS, UPWARD
+from frbcli.film.cells.gas.carry import BACKWARD, DOWNWARD, GIVEN, KEPT, ONWARD, OUT, PATHS, UPWARD, follow_oil
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.tilted.data import TiltedVolumes, tilted_volumes
-from frbcli.film.cells.tilted.gas import follow_land_oil
-from frbcli.film.cells.tilted.kernel import ALL_SIDES, BY_ENDS, COLUMNS, EndsMotion, land_balances
-from frbcli.film.cells.tilted.loads import land_loads
+from frbcli.film.cells.tilted.loads import film_loads
 from frbcli.film.cells.tilted.steady_force import TiltedLand, _loads, tilted_film
 from frbcli.film.gap import AxialGroove, Hole, Section, gap_rate
 
@@ -48,6 +47,12 @@ G = 2e-5
 def lands_of(section: Section, law: Law, around: int = 30) -> tuple[TiltedVolumes, tuple[TiltedLand, ...]]:
     film = tilted_film(section, law, (around, 12), 500.0)
     return tilted_volumes([film]), film.lands
+
+
+def between(d: np.ndarray, v: np.ndarray, total: float, g: float, rate: float) -> GridMotion:
+    """The motion between the coordinates at both ends of a bearing."""
+    (near, more), (near_v, more_v) = ((x[:2], x[2:] - x[:2]) for x in (d, v))
+    return GridMotion(*map(float, (*near, total, *near_v, 0.0, g, rate, *more, *more_v)), True)
 
 
 def motion_of(land: TiltedLand, d: np.ndarray, v: np.ndarray) -> Motion:
@@ -81,8 +86,8 @@ def kernel(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
     m, k = states.shape[1:]
     stencil, right, flows = np.ones((ENTRIES, m, k)), np.ones((m, k, k + ALL_SIDES)), np.ones(FLOWS)
-    given = (part[number] for part in (data.films, data.ring, data.cells, data.places))
-    land_balances(*given, states, EndsMotion(d, v, TOTAL, g, rate), past, stencil, right, flows)
+    given = (part[number] for part in (data.films, data.ring, data.places, data.cells))
+    balances(*given, states, between(d, v, TOTAL, g, rate), past, stencil, right, flows)
     return stencil, right, flows
 
 
@@ -132,8 +137,8 @@ def test_the_oil_that_carries_gas_takes_the_plain_paths(section: Section, total:
         balances = CellBalances(film.section, film.grid, motion, states[BEFORE_UPSTREAM])
         paths, expected = np.ones((PATHS, *film.grid.shape)), np.zeros((PATHS, *film.grid.shape))
         path_layers(oil_paths(balances, state.pressure, state.fraction), expected)
-        given = (part[number] for part in (data.films, data.ring, data.cells, data.places))
-        follow_land_oil(*given, states, EndsMotion(D, V, total, G, 0.0), paths)
+        given = (part[number] for part in (data.films, data.ring, data.places, data.cells))
+        follow_oil(*given, states, between(D, V, total, G, 0.0), paths)
         free = ~film.grid.fixed  # what given cells take and give is not asked for
         for layer in (ONWARD, BACKWARD, UPWARD, DOWNWARD, OUT, GIVEN):
             of = slice(None, -1) if layer in (UPWARD, DOWNWARD) else slice(None)
@@ -164,8 +169,8 @@ def test_derivatives_by_velocities_are_those_of_differences(section: Section, ke
 
 def loads_of(data: TiltedVolumes, number: int, states: np.ndarray, fields: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     loads, slopes, push = np.empty(4), np.empty((4, 4)), np.empty((4, *states.shape[1:]))
-    given = (part[number] for part in (data.films, data.ring, data.cells, data.places))
-    land_loads(*given, states, fields, push, loads, slopes)
+    given = (part[number] for part in (data.films, data.ring, data.places, data.cells))
+    film_loads(*given, states, fields, push, loads, slopes)
     return loads, slopes
 
 

@@ -1,12 +1,16 @@
-"""The oil balances (3.9), (4.31) of the cells of a film with all derivatives, compiled: Balance.residual in one sweep.
+"""The oil balances (3.9), (4.31) of the cells of a film with all derivatives, compiled.
 
-Besides derivatives by w of the cells there are derivatives by the displacement of the journal, so that rotor and film
-can be solved together. """
+The gap H(phi, z) is linear along the axis: of a journal that does not tilt it is the same everywhere. Besides
+derivatives by w of the cells there are derivatives by the velocity of the journal, or by the velocities at both ends of
+its bearing, so that rotor and film can be solved together.
+
+Columns of cells are balanced some at a time, one cell after the other, so that loops run on the vector units
+(faces.py). The flows through their faces are in rows; gas goes with the same ones (gas/carry.py).
+"""
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -24,23 +28,22 @@ from frbcli.film.cells.balance.states import (
     PRESSURE_SLOPE,
     SOURCE,
     SOURCE_SLOPE,
-    carried_at,
 )
 from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES, UNASKED
 from frbcli.film.cells.data import (
+    ALL_SIDES,
     ALONG,
     AREA,
     AROUND,
     BATHED,
     BY_ITSELF,
-    BY_X,
-    BY_Y,
     CLOSED,
     COS,
     EDGE,
     EDGE_COS,
     EDGE_GAP,
     EDGE_SIN,
+    EDGES,
     EXCESS,
     FACE_COS,
     FACE_GAP,
@@ -49,11 +52,25 @@ from frbcli.film.cells.data import (
     FREE,
     GAP,
     LENGTH,
+    MIDDLES,
     SHARE,
     SIDES,
     SIN,
     UNKNOWN,
+    WIDTHS,
 )
+from frbcli.film.cells.tilted.faces import (
+    FaceFlows,
+    OwnAndNext,
+    Sloped,
+    StencilRows,
+    balanced,
+    cubed,
+    drawn,
+    pressed,
+    stored,
+)
+from frbcli.film.cells.tilted.motion import GridMotion, add_by_motion, gap_along
 from frbcli.film.roughness.rough_gap import flowing_cube, rough_flow, sheared_gap
 
 # Sums over the ends and the given cells: what flows in and out there, the net outflow through the ends and the net
@@ -63,22 +80,32 @@ from frbcli.film.roughness.rough_gap import flowing_cube, rough_flow, sheared_ga
 INFLOW, OUTFLOW, ENDS_NET, SUPPLY_NET, CHANNELS_NET, GAS_IN, GAS_OUT, GAS_RELEASED, CREATED, FILLING, FLOWS = range(11)
 
 
-class GridMotion(NamedTuple):
-    """Motion of the journal relative to a film's grid, in the grid's directions, and its share in a time step.
-
-    d: displacement over the clearance; omega: omega_J + omega_S relative to the grid; spin: angular speed of the grid,
-    which turns the velocity v; g: how far a velocity moves the journal within the stage, 0: not at all; rate: of what
-    is stored, 1 / g of a film that remembers its oil, else 0.
-    """
-
-    d_x: float
-    d_y: float
-    omega: float
-    v_x: float = 0.0
-    v_y: float = 0.0
-    spin: float = 0.0
-    g: float = 0.0
-    rate: float = 0.0
+COLUMNS = 8  # that are balanced at a time: what they pass to each other stays near the processor
+# Rows of these columns, one cell after the other, a column behind: FaceFlows around by pressures and by the surfaces,
+# then those along, which are 0 into a column.
+PRESSED, DRAWN, RAISED, FLOW_ROWS = range(0, 16, 4)
+RAISED_BY_GAP = RAISED + 3
+# Not behind: gaps at the faces after the cells, at the edges above, and in their middles by bores; cubes of the gap
+# through which pressures drive the oil, and their derivatives by it, at those faces and edges; what is swept through
+# the faces, and its derivative by the gap; what a cell stores per oil fraction; the balance; and by the gaps what is
+# stored, what leaves a cell around, and what enters it.
+(
+    FACE,
+    EDGE_ABOVE,
+    MIDDLE,
+    CUBE,
+    BY_FACE,
+    CUBE_ABOVE,
+    BY_EDGE,
+    SWEPT,
+    PULL,
+    FACTOR,
+    LEFT,
+    STORED_BY_GAP,
+    OUT_BY_GAP,
+    IN_BY_GAP,
+    ROWS,
+) = range(FLOW_ROWS, FLOW_ROWS + 15)
 
 
 @compiled(inline=True)
@@ -113,16 +140,18 @@ def felt_at_end(last: float, beyond: float, bend: float, groove: float) -> tuple
 
 @compiled()
 def falls_to_air(
-    film: np.record, ring: Array, pressures: Array, d_x: float, d_y: float, far: bool, falls: Array
+    film: np.record, ring: Array, places: Array, pressures: Array, motion: GridMotion, far: bool, falls: Array
 ) -> None:  # fmt: skip
-    """falls (m,) <- of the pressure from the last cells to a free end, times the steepness b of (4.37): Wright's omega
-    function, see boundaries.py. pressures: (m, k) of the cells; d: of the journal over the clearance."""
+    """falls (m,) <- of the pressure from the last cells to an end, if it is free, times the steepness b of (4.37):
+    Wright's omega function, see boundaries.py. pressures: (m, k) of the cells."""
     m, k = pressures.shape
-    steepness = STEEPNESS / film.scales.ambient
-    _, j, b, rise, bend = section_end(film, k, far)
+    steepness, z = STEEPNESS / film.scales.ambient, places[EDGES, k if far else 0]
+    kind, j, b, rise, bend = section_end(film, k, far)
+    if kind != FREE:
+        return
     for i in range(m):
-        h = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
-        cube, _ = flowing_cube(h, film.roughness)
+        near, more = gap_along(ring[GAP, i], ring[SIN, i], ring[COS, i], motion)
+        cube, _ = flowing_cube(near + z * more, film.roughness)
         felt, _, _ = felt_at_end(pressures[i, j], pressures[i, b], bend, 0.0)
         falls[i] = math.log(PREFACTOR * steepness / (cube * film.aspect * rise)) + steepness * felt
     for i in range(m):  # side by side
@@ -150,94 +179,22 @@ def end_flow(
     return conductance * felt, conductance * by_last, conductance * by_beyond, felt
 
 
-@compiled()
-def _between_rough(
-    h: float, s: float, c: float, roughness: float, through: float, by_x: float, by_y: float
-) -> tuple[float, float, float]:
-    """A conductance and its derivatives by the displacement, as rough surfaces leave it in the gap h at the angle with
-    the sine s and cosine c."""
-    factor, rises = rough_flow(h, roughness)
-    return factor * through, factor * by_x + rises * s * through, factor * by_y - rises * c * through
-
-
 @compiled(inline=True)
-def _carried(states: Array, i: int, n: int, j: int, forward: bool, diffuses: bool) -> tuple[float, float, float]:
-    """carried_at through the face after a cell; with artificial diffusion the mean of both cells."""
-    t, t_n = states[FRACTION, i, j], states[FRACTION, n, j]
-    if diffuses:
-        return 0.5 * (t + t_n), 0.5, 0.5
-    return carried_at(t, t_n, states[BEFORE_UPSTREAM, i, j], forward)
-
-
-@compiled()
-def _flow_around(
-    film: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array,
-    right: Array, flows: Array,
-) -> None:  # fmt: skip
-    m, k = states.shape[1], states.shape[2]
-    d_x, d_y, omega, g = motion.d_x, motion.d_y, motion.omega, motion.g
-    bored, half, roughness = film.bored, 0.5 * omega, film.roughness
-    sliding = 0.5 * film.shear * (omega + 2.0 * motion.spin)  # with a shell at rest
-    forward, still = omega >= 0.0, omega == 0.0 and roughness == 0.0  # still: the cells turn with the oil
-    outflow = 0.0  # by the openings in cells that are film in part
-    diffuses = film.diffuses
-    for i in range(m):
-        n = i + 1 if i + 1 < m else 0
-        if rests(states, i) or rests(states, n):
-            continue
-        s, c = ring[FACE_SIN, i], ring[FACE_COS, i]
-        h = ring[FACE_GAP, i] + d_x * s - d_y * c
-        cube, cube_x, cube_y = h * h * h, 3.0 * h * h * s, -3.0 * h * h * c
-        if bored:
-            h_i = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
-            h_n = ring[GAP, n] + d_x * ring[SIN, n] - d_y * ring[COS, n]
-            cube = h_i * h * h_n
-            cube_x = ring[SIN, i] * h * h_n + h_i * s * h_n + h_i * h * ring[SIN, n]
-            cube_y = -ring[COS, i] * h * h_n - h_i * c * h_n - h_i * h * ring[COS, n]
-        extra, grows = 0.0, 0.0  # of the gap that is swept, by the sliding of rough surfaces
-        if roughness > 0.0:
-            cube, cube_x, cube_y = _between_rough(h, s, c, roughness, cube, cube_x, cube_y)
-            extra, grows = sheared_gap(h, roughness, sliding)
-        for j in range(k):  # through the face after the cell
-            open_, carried = cells[AROUND, i, j], half * width[0, j]
-            swept, pull = carried * h + extra * width[0, j], carried + grows * width[0, j]
-            through, by_x, by_y = cube * open_, cube_x * open_, cube_y * open_
-            if cells[EDGE, i, j] != 0.0:
-                at_s, at_c = cells[EDGE_SIN, i, j], cells[EDGE_COS, i, j]
-                at = cells[EDGE_GAP, i, j] + d_x * at_s - d_y * at_c
-                square = at * at * cells[EDGE, i, j]
-                through, by_x, by_y = at * square, 3.0 * square * at_s, -3.0 * square * at_c
-                if roughness > 0.0:
-                    through, by_x, by_y = _between_rough(at, at_s, at_c, roughness, through, by_x, by_y)
-            fall, slope, slope_n = (
-                states[PRESSURE, i, j] - states[PRESSURE, n, j],
-                states[PRESSURE_SLOPE, i, j],
-                states[PRESSURE_SLOPE, n, j],
-            )
-            if still and fall == 0.0 and slope == 0.0 and slope_n == 0.0:
-                continue  # in a cavity at p_cav
-            share, share_n = cells[SHARE, i, j], cells[SHARE, n, j]
-            theta, own, other = 0.0, 0.0, 0.0
-            if not still:
-                theta, here, next_ = _carried(states, i, n, j, forward, diffuses)
-                own = swept * here * states[FRACTION_SLOPE, i, j]
-                other = swept * next_ * states[FRACTION_SLOPE, n, j]
-            pressed, drawn = through * fall, swept * theta
-            by_own, by_next = through * slope, through * slope_n
-            outflow += (share - share_n) * drawn
-            right[i, j, k + BY_ITSELF] -= pressed + share * drawn
-            right[n, j, k + BY_ITSELF] += pressed + share_n * drawn
-            by_x, by_y = g * by_x * fall, g * by_y * fall
-            drawn_x, drawn_y = g * pull * theta * s, -g * pull * theta * c
-            right[i, j, k + BY_X] -= by_x + share * drawn_x
-            right[n, j, k + BY_X] += by_x + share_n * drawn_x
-            right[i, j, k + BY_Y] -= by_y + share * drawn_y
-            right[n, j, k + BY_Y] += by_y + share_n * drawn_y
-            stencil[CENTRE, i, j] += by_own + share * own
-            stencil[BEHIND, i, j] += share * other - by_next
-            stencil[CENTRE, n, j] += by_next - share_n * other
-            stencil[BEFORE, n, j] -= by_own + share_n * own
-    take(outflow, flows)
+def flow_at_end(
+    film: np.record, ring: Array, places: Array, states: Array, motion: GridMotion, far: bool, falls: Array, i: int
+) -> tuple[float, float, float, float]:
+    """What leaves column i through an end, see end_flow, and its derivatives by the pressures of the last two cells and
+    by the gap. falls: see falls_to_air."""
+    k = states.shape[2]
+    kind, j, b, rise, bend = section_end(film, k, far)
+    groove, z = film.share * film.far.pressure if far else 0.0, places[EDGES, k if far else 0]
+    near, more = gap_along(ring[GAP, i], ring[SIN, i], ring[COS, i], motion)
+    (cube, slope), unit = flowing_cube(near + z * more, film.roughness), film.aspect * ring[LENGTH, i] * rise
+    flow, by_last, by_beyond, by_conductance = end_flow(
+        kind, states[PRESSURE, i, j], states[PRESSURE, i, b], cube * unit, bend, groove,
+        STEEPNESS / film.scales.ambient, falls[i], ring[BATHED, i],
+    )  # fmt: skip
+    return flow, by_last, by_beyond, by_conductance * slope * unit
 
 
 @compiled()
@@ -251,127 +208,257 @@ def take(outflow: float, flows: Array) -> None:
 
 
 @compiled()
-def _carry_out_of_excess(
-    ring: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array, right: Array, flows: Array,
-) -> None:  # fmt: skip
-    """Oil that the surfaces carry out of the areas that cells around bores have outside of the film, see bores.py."""
-    m, k = states.shape[1], states.shape[2]
-    d_x, d_y, omega, g = motion.d_x, motion.d_y, motion.omega, motion.g
-    half, outflow = 0.5 * omega, 0.0
-    for i in range(m):
-        b = i - 1 if i > 0 else m - 1
-        s, c = half * (ring[FACE_SIN, i] - ring[FACE_SIN, b]), half * (ring[FACE_COS, i] - ring[FACE_COS, b])
-        rise = half * (ring[FACE_GAP, i] - ring[FACE_GAP, b]) + d_x * s - d_y * c
+def meet_gaps(
+    film: np.record, ring: Array, places: Array, motion: GridMotion, first: int, last: int, k: int, rows: Array
+) -> None:
+    """Gaps in the columns from first to last into rows, what flows through them, and by what their cells store oil."""
+    m, row, rate = ring.shape[1], 0, motion.rate
+    for i in range(first, last):
+        s, c = ring[SIN, i], ring[COS, i]
+        near, rise = gap_along(ring[GAP, i], s, c, motion)
+        near_face, rise_face = gap_along(ring[FACE_GAP, i], ring[FACE_SIN, i], ring[FACE_COS, i], motion)
+        kept, kept_rise = rate * near, rate * rise
+        if rate == 0.0:
+            kept, kept_rise = motion.v_x * s - motion.v_y * c, motion.more_v_x * s - motion.more_v_y * c
         for j in range(k):
-            excess = cells[EXCESS, i, j]
-            if excess != 0.0:
-                oil = excess * states[FRACTION, i, j]
-                outflow += oil * rise
-                right[i, j, k + BY_ITSELF] -= oil * rise
-                right[i, j, k + BY_X] -= g * oil * s
-                right[i, j, k + BY_Y] += g * oil * c
-                stencil[CENTRE, i, j] += excess * rise * states[FRACTION_SLOPE, i, j]
-    take(outflow, flows)
-
-
-@compiled()
-def _flow_along(
-    film: np.record, ring: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array, right: Array,
-) -> None:  # fmt: skip
-    m, k = states.shape[1], states.shape[2]
-    d_x, d_y, g = motion.d_x, motion.d_y, motion.g
-    for i in range(m):
-        if rests(states, i):
-            continue
-        s, c = ring[SIN, i], ring[COS, i]
-        h = ring[GAP, i] + d_x * s - d_y * c
-        cube, square = flowing_cube(h, film.roughness)
-        for j in range(k - 1):  # to the cell above
-            fall = cells[ALONG, i, j] * (states[PRESSURE, i, j] - states[PRESSURE, i, j + 1])
-            flow, by_gap = cube * fall, g * square * fall
-            low = cube * cells[ALONG, i, j] * states[PRESSURE_SLOPE, i, j]
-            high = cube * cells[ALONG, i, j] * states[PRESSURE_SLOPE, i, j + 1]
-            right[i, j, k + BY_ITSELF] -= flow
-            right[i, j + 1, k + BY_ITSELF] += flow
-            right[i, j, k + BY_X] -= by_gap * s
-            right[i, j + 1, k + BY_X] += by_gap * s
-            right[i, j, k + BY_Y] += by_gap * c
-            right[i, j + 1, k + BY_Y] -= by_gap * c
-            stencil[CENTRE, i, j] += low
-            stencil[ABOVE, i, j] -= high
-            stencil[CENTRE, i, j + 1] += high
-            stencil[BELOW, i, j + 1] -= low
-
-
-@compiled()
-def _store(
-    ring: Array, cells: Array, states: Array, motion: GridMotion, past: Array, stencil: Array, right: Array,
-) -> None:  # fmt: skip
-    m, k = states.shape[1], states.shape[2]
-    d_x, d_y, _, v_x, v_y, spin, g, rate = motion
-    for i in range(m):
-        s, c = ring[SIN, i], ring[COS, i]
-        h = ring[GAP, i] + d_x * s - d_y * c
-        if rests(states, i):
+            z, pull = places[MIDDLES, j], 0.5 * motion.omega * places[WIDTHS, j]
+            h = near_face + z * rise_face
+            rows[FACE, row + j], rows[EDGE_ABOVE, row + j] = h, near + places[EDGES, j + 1] * rise
+            rows[SWEPT, row + j], rows[PULL, row + j] = pull * h, pull
+            rows[FACTOR, row + j] = kept + z * kept_rise
+        row += k
+    cubed(rows[FACE, :row], rows[CUBE, :row], rows[BY_FACE, :row])
+    cubed(rows[EDGE_ABOVE, :row], rows[CUBE_ABOVE, :row], rows[BY_EDGE, :row])
+    if film.bored:  # flows take the gaps in the middles of both cells, too
+        for column in range(first, last + 1):
+            i, row = column % m, (column - first) * k
+            near, rise = gap_along(ring[GAP, i], ring[SIN, i], ring[COS, i], motion)
             for j in range(k):
-                right[i, j, k + BY_ITSELF] = cells[AREA, i, j] * (past[i, j] - rate * h * states[FRACTION, i, j])
-            continue
-        # how the gap's change depends on the velocities: those turn with the grid
-        s_v, c_v = s + g * spin * c, c - g * spin * s
-        growth = v_x * s - v_y * c
+                rows[MIDDLE, row + j] = near + places[MIDDLES, j] * rise
+        for e in range((last - first) * k):
+            rows[BY_FACE, e] = rows[MIDDLE, e] * rows[MIDDLE, e + k]
+            rows[CUBE, e] = rows[FACE, e] * rows[BY_FACE, e]
+    if film.roughness > 0.0:
+        _meet_summits(film, ring, places, motion, first, last, k, rows)
+
+
+@compiled()
+def _meet_summits(
+    film: np.record, ring: Array, places: Array, motion: GridMotion, first: int, last: int, k: int, rows: Array
+) -> None:
+    """What rough surfaces make of the rows of meet_gaps."""
+    roughness, sliding = film.roughness, 0.5 * film.shear * (motion.omega + 2.0 * motion.spin)  # with a shell at rest
+    tilts = motion.more_x != 0.0 or motion.more_y != 0.0  # else a column has one gap
+    factor, rises, cube, slope, extra, grows = 1.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(first, last):
+        near, rise = gap_along(ring[GAP, i], ring[SIN, i], ring[COS, i], motion)
         for j in range(k):
-            area, theta = cells[AREA, i, j], states[FRACTION, i, j]
-            stored = area * (rate * h * theta - past[i, j] - states[SOURCE, i, j])
-            kept = area * (rate * h * states[FRACTION_SLOPE, i, j] - states[SOURCE_SLOPE, i, j])
-            by_x, by_y = g * area * rate * theta * s, g * area * rate * theta * c
-            if rate == 0.0:
-                stored += area * growth * theta
-                kept += area * growth * states[FRACTION_SLOPE, i, j]
-                by_x, by_y = area * theta * s_v, area * theta * c_v
-            if cells[UNKNOWN, i, j] != 0.0:
-                right[i, j, k + BY_ITSELF] -= stored
-                right[i, j, k + BY_X] -= by_x
-                right[i, j, k + BY_Y] += by_y
-                stencil[CENTRE, i, j] += kept
+            e = (i - first) * k + j
+            if j == 0 or tilts:
+                factor, rises = rough_flow(rows[FACE, e], roughness)
+                cube, slope = flowing_cube(near + places[EDGES, j + 1] * rise, roughness)
+                extra, grows = sheared_gap(rows[FACE, e], roughness, sliding)
+            rows[BY_FACE, e] = factor * rows[BY_FACE, e] + rises * rows[CUBE, e]
+            rows[CUBE, e] *= factor
+            rows[CUBE_ABOVE, e], rows[BY_EDGE, e] = cube, slope
+            rows[SWEPT, e] += extra * places[WIDTHS, j]
+            rows[PULL, e] += grows * places[WIDTHS, j]
+
+
+@compiled(inline=True, internal=True)
+def _flows_in(rows: Array, first: int, where: slice) -> FaceFlows:
+    """The flows in rows from the row `first` on."""
+    return FaceFlows(rows[first, where], rows[first + 1, where], rows[first + 2, where], rows[first + 3, where])
+
+
+@compiled()
+def flow_around(
+    film: np.record, cells: Array, states: Array, motion: GridMotion, first: int, last: int, k: int, at: int,
+    rows: Array,
+) -> float:  # fmt: skip
+    """Flows from the columns first to last to the next ones into rows, which hold the gaps from `at` on and the flows
+    one column later; returns what openings take of them. The column before the very first is on its own."""
+    behind = last % (cells.shape[1] // k) if last == first + 1 else first + 1
+    own, next_ = slice(first * k, last * k), slice(behind * k, (behind + last - first) * k)
+    by, to = slice(at, at + (last - first) * k), slice(at + k, at + (last - first + 1) * k)
+    pressed(
+        cells[AROUND, own], rows[CUBE, by], rows[BY_FACE, by], motion.g,
+        OwnAndNext(states[PRESSURE, own], states[PRESSURE, next_]),
+        OwnAndNext(states[PRESSURE_SLOPE, own], states[PRESSURE_SLOPE, next_]), _flows_in(rows, PRESSED, to),
+    )  # fmt: skip
+    outflow: float = drawn(
+        rows[SWEPT, by], rows[PULL, by], motion.omega >= 0.0, film.diffuses, motion.g,
+        OwnAndNext(states[FRACTION, own], states[FRACTION, next_]), states[BEFORE_UPSTREAM, own],
+        OwnAndNext(states[FRACTION_SLOPE, own], states[FRACTION_SLOPE, next_]),
+        OwnAndNext(cells[SHARE, own], cells[SHARE, next_]), _flows_in(rows, DRAWN, to),
+    )  # fmt: skip
+    return outflow
+
+
+@compiled()
+def flow_along(cells: Array, states: Array, g: float, first: int, last: int, k: int, rows: Array) -> None:
+    """Flows from the cells of the columns first to last to those above into rows, one column later."""
+    n = (last - first) * k
+    # The last cell of a column has no conductance to the first of the next one.
+    up, above = slice(first * k, last * k - 1), slice(first * k + 1, last * k)
+    pressed(
+        cells[ALONG, up], rows[CUBE_ABOVE, : n - 1], rows[BY_EDGE, : n - 1], g,
+        OwnAndNext(states[PRESSURE, up], states[PRESSURE, above]),
+        OwnAndNext(states[PRESSURE_SLOPE, up], states[PRESSURE_SLOPE, above]),
+        _flows_in(rows, RAISED, slice(k, n + k - 1)),
+    )  # fmt: skip
+    for layer in range(RAISED, FLOW_ROWS):
+        rows[layer, k - 1] = rows[layer, n + k - 1] = 0.0
+
+
+@compiled()
+def _balance(
+    cells: Array, states: Array, motion: GridMotion, past: Array, first: int, last: int, k: int, rows: Array,
+    stencil: Array,
+) -> None:  # fmt: skip
+    """The balances of the columns first to last without flows through ends, and the entries of the stencil."""
+    n, g, rate = (last - first) * k, motion.g, motion.rate
+    own, here, there, below = slice(first * k, last * k), slice(0, n), slice(k, n + k), slice(k - 1, n + k - 1)
+    share, centre, left = cells[SHARE, own], stencil[CENTRE, own], rows[LEFT, here]
+    stored(
+        cells[AREA, own], cells[UNKNOWN, own], rows[FACTOR, here], g * rate if rate != 0.0 else 1.0, past[own],
+        Sloped(states[FRACTION, own], states[FRACTION_SLOPE, own]),
+        Sloped(states[SOURCE, own], states[SOURCE_SLOPE, own]), left, centre, rows[STORED_BY_GAP, here],
+    )  # fmt: skip
+    flow_along(cells, states, g, first, last, k, rows)
+    around_in, around_out = _flows_in(rows, PRESSED, here), _flows_in(rows, PRESSED, there)
+    carried_in, carried_out = _flows_in(rows, DRAWN, here), _flows_in(rows, DRAWN, there)
+    raised_in, raised_out = _flows_in(rows, RAISED, below), _flows_in(rows, RAISED, there)
+    by_gaps = OwnAndNext(rows[IN_BY_GAP, here], rows[OUT_BY_GAP, here])
+    to = StencilRows(centre, stencil[BEFORE, own], stencil[BEHIND, own], stencil[BELOW, own], stencil[ABOVE, own])
+    balanced(share, around_in, around_out, carried_in, carried_out, raised_in, raised_out, by_gaps, left, to)
+
+
+@compiled(fastmath={"contract"})
+def _follow_journal(
+    film: np.record, ring: Array, places: Array, motion: GridMotion, first: int, last: int, rows: Array, right: Array
+) -> None:
+    """right <- the balances of the columns first to last, and what they change with, from the gaps at the faces, in the
+    middles and at the edges of the cells to the velocity of the journal, or to those at both ends of its bearing."""
+    m, k, e, turns = right.shape[0], right.shape[1], 0, motion.g * motion.spin if motion.rate == 0.0 else 0.0
+    bored = film.bored
+    for i in range(first, last):
+        b, n = i - 1 if i > 0 else m - 1, i + 1 if i + 1 < m else 0
+        s, c, s_out, c_out = ring[SIN, i], ring[COS, i], ring[FACE_SIN, i], ring[FACE_COS, i]
+        s_in, c_in, raised, raised_far = ring[FACE_SIN, b], ring[FACE_COS, b], 0.0, 0.0
+        near, rise = gap_along(ring[GAP, i], s, c, motion)
+        near_b, rise_b = gap_along(ring[GAP, b], ring[SIN, b], ring[COS, b], motion)
+        near_n, rise_n = gap_along(ring[GAP, n], ring[SIN, n], ring[COS, n], motion)
+        s_kept, c_kept = s + turns * c, c - turns * s  # velocities turn with the grid
+        for j in range(k):
+            z, kept, above = places[MIDDLES, j], rows[STORED_BY_GAP, e], rows[RAISED_BY_GAP, e + k]
+            out, into, up = rows[OUT_BY_GAP, e], rows[IN_BY_GAP, e], above - raised
+            x, y = out * s_out - into * s_in + kept * s_kept, out * c_out - into * c_in + kept * c_kept
+            if bored:  # by the gaps in the middles of both cells, too, of which the flows are multiples
+                off, on = motion.g * rows[PRESSED, e + k], motion.g * rows[PRESSED, e]
+                own = (off - on) / (near + z * rise)
+                off, on = off / (near_n + z * rise_n), on / (near_b + z * rise_b)
+                x += own * s + off * ring[SIN, n] - on * ring[SIN, b]
+                y += own * c + off * ring[COS, n] - on * ring[COS, b]
+            right[i, j, k + BY_ITSELF] = rows[LEFT, e]
+            if motion.by_ends:
+                above_far = places[EDGES, j + 1] * above
+                far, raised_far = above_far - raised_far, above_far
+                far_x, far_y = z * x + far * s, z * y + far * c
+                right[i, j, k + 1], right[i, j, k + 2] = far_x - x - up * s, y + up * c - far_y
+                right[i, j, k + 3], right[i, j, k + 4] = -far_x, far_y
+            else:
+                right[i, j, k + 1], right[i, j, k + 2] = -x - up * s, y + up * c
+            raised = above
+            e += 1
+
+
+@compiled(inline=True)
+def edge_cube(
+    film: np.record, cells: Array, places: Array, motion: GridMotion, i: int, j: int
+) -> tuple[float, float]:
+    """phi_x H^3 and its derivative by H next to the edge of an opening, where the flow around takes its gap there."""
+    near, more = gap_along(cells[EDGE_GAP, i, j], cells[EDGE_SIN, i, j], cells[EDGE_COS, i, j], motion)
+    return flowing_cube(near + places[MIDDLES, j] * more, film.roughness)
+
+
+@compiled()
+def _flow_past_edges(
+    film: np.record, cells: Array, places: Array, states: Array, motion: GridMotion, stencil: Array, right: Array
+) -> None:
+    """Add the flows around next to the edges of openings."""
+    m, k = states.shape[1], states.shape[2]
+    for i in range(m):
+        n = i + 1 if i + 1 < m else 0
+        for j in range(k):
+            open_ = cells[EDGE, i, j]
+            if open_ == 0.0:
+                continue
+            z, s, c = places[MIDDLES, j], cells[EDGE_SIN, i, j], cells[EDGE_COS, i, j]
+            (cube, slope), fall = edge_cube(film, cells, places, motion, i, j), states[PRESSURE, i, j]
+            fall -= states[PRESSURE, n, j]
+            flow, by_gap = cube * open_ * fall, motion.g * slope * open_ * fall
+            by_own, by_next = cube * open_ * states[PRESSURE_SLOPE, i, j], cube * open_ * states[PRESSURE_SLOPE, n, j]
+            right[i, j, k + BY_ITSELF] -= flow
+            right[n, j, k + BY_ITSELF] += flow
+            add_by_motion(right, i, j, z, motion.by_ends, -by_gap * s, by_gap * c)
+            add_by_motion(right, n, j, z, motion.by_ends, by_gap * s, -by_gap * c)
+            stencil[CENTRE, i, j] += by_own
+            stencil[BEHIND, i, j] -= by_next
+            stencil[CENTRE, n, j] += by_next
+            stencil[BEFORE, n, j] -= by_own
+
+
+@compiled(inline=True)
+def opening_rate(ring: Array, i: int, motion: GridMotion) -> tuple[float, float, float, float]:
+    """At which the surfaces carry the oil out of column i per area that its cells have outside of the film, see
+    bores.py: at the place 0, and how much more at 1; its derivatives by the displacement along x, and minus y."""
+    b, half = i - 1 if i > 0 else ring.shape[1] - 1, 0.5 * motion.omega
+    s, c = half * (ring[FACE_SIN, i] - ring[FACE_SIN, b]), half * (ring[FACE_COS, i] - ring[FACE_COS, b])
+    near, more = gap_along(half * (ring[FACE_GAP, i] - ring[FACE_GAP, b]), s, c, motion)
+    return near, more, s, c
+
+
+@compiled()
+def _carry_out_of_excess(
+    ring: Array, cells: Array, places: Array, states: Array, motion: GridMotion, stencil: Array, right: Array,
+    flows: Array,
+) -> None:  # fmt: skip
+    """Oil that the surfaces carry out of the areas that cells around bores have outside of the film."""
+    m, k = states.shape[1], states.shape[2]
+    outflow = 0.0
+    for i in range(m):
+        near, more, s, c = opening_rate(ring, i, motion)
+        for j in range(k):
+            excess, z = cells[EXCESS, i, j], places[MIDDLES, j]
+            if excess != 0.0:
+                oil, grows = excess * states[FRACTION, i, j], near + z * more
+                outflow += oil * grows
+                right[i, j, k + BY_ITSELF] -= oil * grows
+                add_by_motion(right, i, j, z, motion.by_ends, -motion.g * oil * s, motion.g * oil * c)
+                stencil[CENTRE, i, j] += excess * grows * states[FRACTION_SLOPE, i, j]
+    take(outflow, flows)
 
 
 @compiled(makes_arrays=True)
 def _flow_through_ends(
-    film: np.record, ring: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array, right: Array,
-    flows: Array,
+    film: np.record, ring: Array, cells: Array, places: Array, states: Array, motion: GridMotion, stencil: Array,
+    right: Array, flows: Array,
 ) -> None:  # fmt: skip
-    m, k = states.shape[1], states.shape[2]
-    d_x, d_y, g = motion.d_x, motion.d_y, motion.g
-    steepness, falls = STEEPNESS / film.scales.ambient, np.empty(m)
+    m, k, falls = states.shape[1], states.shape[2], np.empty(states.shape[1])
     for far in (False, True):
-        kind, j, b, rise, bend = section_end(film, k, far)
+        kind, j, b, _, _ = section_end(film, k, far)
         if kind == CLOSED:
             continue
-        groove = film.share * film.far.pressure if far else 0.0
-        if kind == FREE:
-            falls_to_air(film, ring, states[PRESSURE], d_x, d_y, far, falls)
+        falls_to_air(film, ring, places, states[PRESSURE], motion, far, falls)
+        z = places[EDGES, k if far else 0]
         for i in range(m):
             if cells[UNKNOWN, i, j] == 0.0 or rests(states, i):
                 continue
-            s, c = ring[SIN, i], ring[COS, i]
-            h = ring[GAP, i] + d_x * s - d_y * c
-            cube, square = flowing_cube(h, film.roughness)
-            unit = film.aspect * ring[LENGTH, i] * rise
-            flow, by_last, by_beyond, by_conductance = end_flow(
-                kind,
-                states[PRESSURE, i, j],
-                states[PRESSURE, i, b],
-                cube * unit,
-                bend,
-                groove,
-                steepness,
-                falls[i],
-                ring[BATHED, i],
-            )
-            by_gap = g * by_conductance * square * unit
+            flow, by_last, by_beyond, by_gap = flow_at_end(film, ring, places, states, motion, far, falls, i)
+            by_gap *= motion.g
             right[i, j, k + BY_ITSELF] -= flow
-            right[i, j, k + BY_X] -= by_gap * s
-            right[i, j, k + BY_Y] += by_gap * c
+            add_by_motion(right, i, j, z, motion.by_ends, -by_gap * ring[SIN, i], by_gap * ring[COS, i])
             stencil[CENTRE, i, j] += by_last * states[PRESSURE_SLOPE, i, j]
             if b > j:
                 stencil[ABOVE, i, j] += by_beyond * states[PRESSURE_SLOPE, i, b]
@@ -415,8 +502,60 @@ def hold_given(cells: Array, stencil: Array, right: Array, flows: Array, sides: 
 
 
 @compiled()
+def _stand(
+    ring: Array, cells: Array, places: Array, states: Array, motion: GridMotion, past: Array, i: int, stencil: Array,
+    right: Array,
+) -> None:  # fmt: skip
+    """The balance of a column that rests, see resting.py: its residual alone."""
+    k = past.shape[1]
+    near, rise = gap_along(ring[GAP, i], ring[SIN, i], ring[COS, i], motion)
+    for j in range(k):
+        h = near + places[MIDDLES, j] * rise
+        right[i, j, k + BY_ITSELF] = cells[AREA, i, j] * (past[i, j] - motion.rate * h * states[FRACTION, i, j])
+        for entry in range(ENTRIES):
+            stencil[entry, i, j] = 0.0
+    stencil[CENTRE, i, 0] = UNASKED
+
+
+@compiled()
+def _flow_between(
+    film: np.record, ring: Array, places: Array, cells: Array, states: Array, motion: GridMotion, past: Array,
+    rows: Array, stencil: Array, right: Array,
+) -> float:  # fmt: skip
+    """The balances without openings and ends; returns what openings take of the flows around."""
+    m, k = past.shape
+    of, at, sums = cells.reshape(-1, m * k), states.reshape(-1, m * k), stencil.reshape(-1, m * k)
+    meet_gaps(film, ring, places, motion, m - 1, m, k, rows)
+    flow_around(film, of, at, motion, m - 1, m, k, 0, rows)
+    outflow, first, n = 0.0, 0, k
+    while first < m:
+        for layer in range(RAISED):  # the flows into the first of these columns
+            for j in range(k):
+                rows[layer, j] = rows[layer, n + j]
+        last = first + 1
+        if rests(states, first):
+            _stand(ring, cells, places, states, motion, past, first, stencil, right)
+            for layer in range(RAISED):
+                for j in range(k):
+                    rows[layer, k + j] = 0.0
+        else:
+            while last < min(first + COLUMNS, m) and not rests(states, last):
+                last += 1
+            meet_gaps(film, ring, places, motion, first, last, k, rows)
+            inner = min(last, m - 1)
+            if inner > first:
+                outflow += flow_around(film, of, at, motion, first, inner, k, 0, rows)
+            if last == m:
+                outflow += flow_around(film, of, at, motion, m - 1, m, k, (last - first - 1) * k, rows)
+            _balance(of, at, motion, past.reshape(-1), first, last, k, rows, sums)
+            _follow_journal(film, ring, places, motion, first, last, rows, right)
+        n, first = (last - first) * k, last
+    return outflow
+
+
+@compiled(makes_arrays=True)
 def balances(
-    film: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, past: Array,
+    film: np.record, ring: Array, places: Array, cells: Array, states: Array, motion: GridMotion, past: Array,
     stencil: Array, right: Array, flows: Array,
 ) -> None:  # fmt: skip
     """The balances of the cells and their derivatives.
@@ -424,32 +563,20 @@ def balances(
     Stored are rate H theta - past (m, k); with rate 0, for a film without memory, the gap's own change with the
     velocity of the motion.
     stencil (ENTRIES, m, k), right (m, k, k + SIDES), its last layers: minus the residual and minus its derivatives by
-    the journal's velocities; flows (FLOWS,). Columns that rest, see resting.py, have the residual alone.
+    the journal's velocities, or (m, k, k + ALL_SIDES) by those at both ends; flows (FLOWS,). Columns that rest, see
+    resting.py, have the residual alone.
     """
-    m, k = past.shape
-    for entry in range(ENTRIES):
-        for i in range(m):
-            for j in range(k):
-                stencil[entry, i, j] = 0.0
-    for i in range(m):
-        if rests(states, i):
-            stencil[CENTRE, i, 0] = UNASKED
-            continue
-        for j in range(k):
-            for side in range(SIDES):
-                right[i, j, k + side] = 0.0
+    rows, sides = np.empty((ROWS, (COLUMNS + 1) * past.shape[1])), ALL_SIDES if motion.by_ends else SIDES
     for flow in range(FLOWS):
         flows[flow] = 0.0
-    _flow_around(film, ring, width, cells, states, motion, stencil, right, flows)
+    take(_flow_between(film, ring, places, cells, states, motion, past, rows, stencil, right), flows)
+    if film.edges:
+        _flow_past_edges(film, cells, places, states, motion, stencil, right)
     if film.bored:
-        _carry_out_of_excess(ring, cells, states, motion, stencil, right, flows)
-    _flow_along(film, ring, cells, states, motion, stencil, right)
+        _carry_out_of_excess(ring, cells, places, states, motion, stencil, right, flows)
     if film.diffuses and film.length > 0.0:
-        flows[CREATED] = spread_oil(
-            film, ring, cells, states, motion.d_x, motion.d_y, motion.omega, motion.g, stencil, right
-        )
-    _store(ring, cells, states, motion, past, stencil, right)
-    _flow_through_ends(film, ring, cells, states, motion, stencil, right, flows)
-    hold_given(cells, stencil, right, flows, SIDES)
+        flows[CREATED] = spread_oil(film, ring, places, cells, states, motion, stencil, right)
+    _flow_through_ends(film, ring, cells, places, states, motion, stencil, right, flows)
+    hold_given(cells, stencil, right, flows, sides)
     if film.given > 0.0:
         flows[FILLING] = (film.given - flows[SUPPLY_NET]) / film.line

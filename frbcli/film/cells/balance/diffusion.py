@@ -31,11 +31,10 @@ from frbcli.film.cells.data import (
     AROUND,
     BATHED,
     BY_ITSELF,
-    BY_X,
-    BY_Y,
     CLOSED,
     COS,
     EDGE,
+    EDGES,
     FACE_COS,
     FACE_GAP,
     FACE_SIN,
@@ -43,18 +42,23 @@ from frbcli.film.cells.data import (
     FREE,
     GAP,
     LENGTH,
+    MIDDLES,
     SIN,
     UNKNOWN,
 )
+from frbcli.film.cells.tilted.motion import GridMotion, add_by_motion, gap_along
 
 
 class Face(NamedTuple):
-    """Between two cells. size: diffusion per gap H and fall of the oil fraction; unit: see spread_at; x, y: g times the
-    sine and cosine of the angle; forth, back: entries of the stencil of either cell for the other."""
+    """Between two cells. size: diffusion per gap H and fall of the oil fraction; unit: H^2 times the one of spread_at;
+    z, by_ends: see add_by_motion; x, y: g times the sine and cosine of the angle; forth, back: entries of the stencil
+    of either cell for the other."""
 
     size: float
     gap: float
     unit: float
+    z: float
+    by_ends: bool
     x: float
     y: float
     forth: int
@@ -84,47 +88,46 @@ def spread_at(
 
 @compiled()
 def spread_oil(
-    film: np.record, ring: Array, cells: Array, states: Array, d_x: float, d_y: float, omega: float, g: float,
-    stencil: Array, right: Array,
+    film: np.record, ring: Array, places: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array,
+    right: Array,
 ) -> float:  # fmt: skip
     """Add the diffusion to the balances of a film with such a term and to their derivatives, see balances. Returns what
     it brings into the film from where the oil fraction is given."""
-    (_, m, k), created = states.shape, 0.0
-    reach = 0.5 * GAMMA * film.length * abs(omega)
+    (_, m, k), created, g, by_ends = states.shape, 0.0, motion.g, motion.by_ends
+    reach = 0.5 * GAMMA * film.length * abs(motion.omega)
     for i in range(m):
         n = i + 1 if i + 1 < m else 0
         s, c = ring[FACE_SIN, i], ring[FACE_COS, i]
-        h = ring[FACE_GAP, i] + d_x * s - d_y * c
-        unit = reach / (GAMMA * h * h)
+        near, rise = gap_along(ring[FACE_GAP, i], s, c, motion)
         for j in range(k):
-            size = reach * (cells[AROUND, i, j] + cells[EDGE, i, j])
-            face = Face(size, h, unit, g * s, g * c, BEHIND, BEFORE)
+            size, z = reach * (cells[AROUND, i, j] + cells[EDGE, i, j]), places[MIDDLES, j]
+            face = Face(size, near + z * rise, reach / GAMMA, z, by_ends, g * s, g * c, BEHIND, BEFORE)
             created += _spread_between(cells, states, i, j, n, j, face, stencil, right)
     if film.spread == 0.0:
         return created
     for i in range(m):
         s, c = ring[SIN, i], ring[COS, i]
-        h = ring[GAP, i] + d_x * s - d_y * c
-        unit = reach / (GAMMA * h * h)
+        near, rise = gap_along(ring[GAP, i], s, c, motion)
         for j in range(k - 1):
-            size = reach * film.spread / film.aspect * cells[ALONG, i, j]
-            face = Face(size, h, unit, g * s, g * c, ABOVE, BELOW)
+            size, z = reach * film.spread / film.aspect * cells[ALONG, i, j], places[EDGES, j + 1]
+            face = Face(size, near + z * rise, reach / GAMMA, z, by_ends, g * s, g * c, ABOVE, BELOW)
             created += _spread_between(cells, states, i, j, i, j + 1, face, stencil, right)
         for far in (False, True):
             end, j = (film.far, k - 1) if far else (film.near, 0)
             full = 0.0 if end.kind == CLOSED else ring[BATHED, i] if end.kind == FREE else 1.0
             if full == 0.0 or cells[UNKNOWN, i, j] == 0.0:
                 continue
+            z = places[EDGES, k if far else 0]
+            h = near + z * rise
             pressure, fraction = (film.share * end.pressure, film.fraction) if end.kind == FED else (0.0, 1.0)
             spread, own, _, by_unit = spread_at(
                 states[FRACTION, i, j], fraction, states[PRESSURE, i, j], pressure, states[FRACTION_SLOPE, i, j], 0.0,
-                states[PRESSURE_SLOPE, i, j], 0.0, unit,
+                states[PRESSURE_SLOPE, i, j], 0.0, reach / (GAMMA * h * h),
             )  # fmt: skip
             size = full * reach * film.spread * ring[LENGTH, i] * end.reach
             by_gap = size * (spread - 2.0 * by_unit)
             right[i, j, k + BY_ITSELF] -= size * h * spread
-            right[i, j, k + BY_X] -= g * s * by_gap
-            right[i, j, k + BY_Y] += g * c * by_gap
+            add_by_motion(right, i, j, z, by_ends, -g * s * by_gap, g * c * by_gap)
             stencil[CENTRE, i, j] += size * h * own
             created -= size * h * spread
     return created
@@ -136,26 +139,24 @@ def _spread_between(
 ) -> float:
     """Add what goes from the cell (i, j) to the cell (n, q). Returns what comes from a cell whose oil fraction is given
     into one of the film."""
-    size, h, unit, x, y, forth, back = face
+    size, h, unit, z, by_ends, x, y, forth, back = face
     spread, own, other, by_unit = spread_at(
         states[FRACTION, i, j], states[FRACTION, n, q], states[PRESSURE, i, j], states[PRESSURE, n, q],
         states[FRACTION_SLOPE, i, j], states[FRACTION_SLOPE, n, q], states[PRESSURE_SLOPE, i, j],
-        states[PRESSURE_SLOPE, n, q], unit,
+        states[PRESSURE_SLOPE, n, q], unit / (h * h),
     )  # fmt: skip
     flow, by_gap, k = size * h * spread, size * (spread - 2.0 * by_unit), states.shape[2]
     created = 0.0
     if cells[UNKNOWN, i, j] != 0.0:
         right[i, j, k + BY_ITSELF] -= flow
-        right[i, j, k + BY_X] -= x * by_gap
-        right[i, j, k + BY_Y] += y * by_gap
+        add_by_motion(right, i, j, z, by_ends, -x * by_gap, y * by_gap)
         stencil[CENTRE, i, j] += size * h * own
         stencil[forth, i, j] += size * h * other
     else:
         created += flow
     if cells[UNKNOWN, n, q] != 0.0:
         right[n, q, k + BY_ITSELF] += flow
-        right[n, q, k + BY_X] += x * by_gap
-        right[n, q, k + BY_Y] -= y * by_gap
+        add_by_motion(right, n, q, z, by_ends, x * by_gap, -y * by_gap)
         stencil[CENTRE, n, q] -= size * h * other
         stencil[back, n, q] -= size * h * own
     else:

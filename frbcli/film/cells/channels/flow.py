@@ -15,20 +15,10 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.compiled import Indices, compiled
 from frbcli.film.cells.balance.balances import CHANNELS_NET
-from frbcli.film.cells.balance.clipped import clipped_push
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, pressure_of
 from frbcli.film.cells.block_cyclic import CENTRE
-from frbcli.film.cells.data import (
-    BETWEEN_MIDDLES,
-    EXCHANGE,
-    FEED_HOLE,
-    LOAD,
-    NO_CLIP,
-    PUSH_X,
-    PUSH_Y,
-    SIDES,
-    Records,
-)
+from frbcli.film.cells.data import EXCHANGE, FEED_HOLE, SIDES, Records
+from frbcli.film.cells.tilted.loads import press_cells
 
 
 @compiled()
@@ -134,20 +124,15 @@ def mean_changes(
 
 @compiled()
 def push_of_channel(
-    film: np.record, ring: Array, cells: Array, states: Array, fields: Array, slot: int,
+    film: np.record, ring: Array, cells: Array, states: Array, fields: Array, slot: int, push: Array,
 ) -> tuple[float, float]:  # fmt: skip
-    """(x, y): the force on the journal in N per pressure of one channel, see film_loads."""
+    """(x, y): the force on the journal in N per pressure of one channel, see film_loads. push: see press_cells."""
     m, k = states.shape[1], states.shape[2]
-    if film.clips == BETWEEN_MIDDLES:
-        _, _, x, y, _, _ = clipped_push(film, ring, cells, states, fields, k + SIDES + slot, k + SIDES + slot)
-        return film.force_scale * x, film.force_scale * y
-    clips, x, y = film.clips != NO_CLIP, 0.0, 0.0
+    press_cells(film, ring, cells, states, fields, push)
+    x, y = 0.0, 0.0
     for i in range(m):
-        p = 0.0
         for j in range(k):
-            slope = states[PRESSURE_SLOPE, i, j]
-            if not (clips and states[PRESSURE, i, j] + slope * fields[i, j, k] < film.scales.cavitation):
-                p += cells[LOAD, i, j] * slope * fields[i, j, k + SIDES + slot]
-        x += ring[PUSH_X, i] * p
-        y += ring[PUSH_Y, i] * p
+            change = states[PRESSURE_SLOPE, i, j] * fields[i, j, k + SIDES + slot]
+            x += push[0, i, j] * change
+            y += push[1, i, j] * change
     return film.force_scale * x, film.force_scale * y

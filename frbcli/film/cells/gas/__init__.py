@@ -1,2 +1,1 @@
-"""Free gas that the oil of a finite-volume film carries: its balance, compiled and in array notation, and
-linearised."""
+"""Free gas that the oil of a finite-volume film carries: its balance, compiled, and linearised."""

@@ -28,20 +28,13 @@ from numpy.typing import NDArray
 
 from frbcli.arrays import Array
 from frbcli.film.cavitation.law import Law, Scales
-from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import CARRIED_GAS, FRACTION, FREE_GAS, PRESSURE, TURNOVER
 from frbcli.film.cells.gas.carry import (
-    BACKWARD,
-    DOWNWARD,
     GAS_PAST,
-    GIVEN,
     HEIGHT,
     KEPT,
     KNOWN,
     NONE,
-    ONWARD,
-    OUT,
-    UPWARD,
 )
 from frbcli.film.cells.mesh.grid import VolumeGrid
 
@@ -149,33 +142,6 @@ class OilPaths(NamedTuple):
     given: Array
 
 
-def oil_paths(balances: CellBalances, pressure: Array, fraction: Array) -> OilPaths:
-    """The flows of oil by where they begin, of cells with pressures and oil fractions (m, k).
-
-    Where surfaces carry more out of a cell than into the next one, which is an opening in part, the opening takes the
-    difference, or gives it.
-    """
-    fluxes, _, _ = balances.fluxes(pressure, fraction)
-    share = balances.grid.share
-    leaves = fluxes.around + share * fluxes.carried
-    enters = fluxes.around + np.roll(share, -1, axis=0) * fluxes.carried
-    shared = np.sign(leaves) * np.where(leaves * enters > 0.0, np.minimum(np.abs(leaves), np.abs(enters)), 0.0)
-    onward, backward = np.maximum(shared, 0.0), np.maximum(-shared, 0.0)
-    upward, downward = np.maximum(fluxes.along, 0.0), np.maximum(-fluxes.along, 0.0)
-    out = onward + np.roll(backward, 1, axis=0)
-    out[:, :-1] += upward
-    out[:, 1:] += downward
-    given = np.zeros_like(out)
-    outside = [leaves - shared, -np.roll(enters - shared, 1, axis=0), fluxes.excess]
-    for at, flow in ((0, fluxes.near), (-1, fluxes.far)):
-        outside.append(np.zeros_like(out))
-        outside[-1][:, at] = flow
-    for flow in outside:
-        out += np.maximum(flow, 0.0)
-        given += np.maximum(-flow, 0.0)
-    return OilPaths(onward, backward, upward, downward, out, given)
-
-
 def free_gas(law: Law, scales: Scales, grid: VolumeGrid, states: Array, paths: Array, off: float) -> FreeGas:
     """The gas of a solution with the states (STATES, m, k), with the `paths` (PATHS, m, k) of carry.py."""
     layers, states = paths.copy(), states.copy()
@@ -200,13 +166,6 @@ def paths_of(layers: Array) -> OilPaths:
     """The paths in array notation of the layers of carry.py (PATHS, m, k)."""
     onward, backward, upward, downward, out, given = layers[:KEPT]
     return OilPaths(onward, backward, upward[:, :-1], downward[:, :-1], out, given)
-
-
-def path_layers(paths: OilPaths, layers: Array) -> None:
-    """The layers of the paths of carry.py (PATHS, m, k) <- paths in array notation."""
-    layers[UPWARD:OUT, :, -1] = 0.0
-    layers[UPWARD, :, :-1], layers[DOWNWARD, :, :-1] = paths.upward, paths.downward
-    layers[ONWARD], layers[BACKWARD], layers[OUT], layers[GIVEN] = paths.onward, paths.backward, paths.out, paths.given
 
 
 def brought(paths: OilPaths, free: Array) -> Array:

@@ -14,48 +14,26 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.cells.balance.balances import (
+    COLUMNS,
+    DRAWN,
     GAS_IN,
     GAS_OUT,
     GAS_RELEASED,
-    GridMotion,
-    end_flow,
+    PRESSED,
+    RAISED,
+    ROWS,
+    edge_cube,
     falls_to_air,
+    flow_along,
+    flow_around,
+    flow_at_end,
+    meet_gaps,
+    opening_rate,
     section_end,
 )
-from frbcli.film.cells.balance.boundaries import STEEPNESS
-from frbcli.film.cells.balance.states import (
-    BEFORE_UPSTREAM,
-    CARRIED_GAS,
-    FRACTION,
-    FREE_GAS,
-    PASSED_ON,
-    PRESSURE,
-    TURNOVER,
-    limited_at,
-)
-from frbcli.film.cells.data import (
-    ALONG,
-    AREA,
-    AROUND,
-    BATHED,
-    CLOSED,
-    COS,
-    EDGE,
-    EDGE_COS,
-    EDGE_GAP,
-    EDGE_SIN,
-    EXCESS,
-    FACE_COS,
-    FACE_GAP,
-    FACE_SIN,
-    FREE,
-    GAP,
-    LENGTH,
-    SHARE,
-    SIN,
-    UNKNOWN,
-)
-from frbcli.film.roughness.rough_gap import flowing_cube, rough_flow, sheared_gap
+from frbcli.film.cells.balance.states import CARRIED_GAS, FRACTION, FREE_GAS, PASSED_ON, PRESSURE, TURNOVER
+from frbcli.film.cells.data import AREA, CLOSED, COS, EDGE, EXCESS, GAP, MIDDLES, SHARE, SIN, UNKNOWN
+from frbcli.film.cells.tilted.motion import GridMotion, gap_along
 
 # Layers of the paths of the oil: to the next cell and back through the face after each cell around and along, all that
 # leaves a cell, what comes into it from outside (OilPaths of balance.py); M, see there, and the gas that is known to
@@ -109,43 +87,6 @@ def pass_around(pressed: float, drawn: float, cells: Array, i: int, n: int, j: i
     paths[OUT, n, j] += backward
 
 
-@compiled()
-def _around(
-    film: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, paths: Array
-) -> None:  # fmt: skip
-    m, k = states.shape[1], states.shape[2]
-    d_x, d_y, omega = motion.d_x, motion.d_y, motion.omega
-    forward = omega >= 0.0
-    for i in range(m):
-        n, b = i + 1 if i + 1 < m else 0, i - 1 if i > 0 else m - 1
-        h = ring[FACE_GAP, i] + d_x * ring[FACE_SIN, i] - d_y * ring[FACE_COS, i]
-        h_b = ring[FACE_GAP, b] + d_x * ring[FACE_SIN, b] - d_y * ring[FACE_COS, b]
-        cube = h * h * h
-        if film.bored:
-            h_i = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
-            h_n = ring[GAP, n] + d_x * ring[SIN, n] - d_y * ring[COS, n]
-            cube = h_i * h * h_n
-        extra = 0.0
-        if film.roughness > 0.0:
-            cube *= rough_flow(h, film.roughness)[0]
-            extra, _ = sheared_gap(h, film.roughness, 0.5 * film.shear * (omega + 2.0 * motion.spin))
-        for j in range(k):
-            through = cube * cells[AROUND, i, j]
-            if cells[EDGE, i, j] != 0.0:
-                at = cells[EDGE_GAP, i, j] + d_x * cells[EDGE_SIN, i, j] - d_y * cells[EDGE_COS, i, j]
-                through = flowing_cube(at, film.roughness)[0] * cells[EDGE, i, j]
-            t, t_n = states[FRACTION, i, j], states[FRACTION, n, j]
-            over, over_n = max(t - 1.0, 0.0), max(t_n - 1.0, 0.0)
-            upstream, downstream = (t - over, t_n - over_n) if forward else (t_n - over_n, t - over)
-            more, _, _ = limited_at(upstream - states[BEFORE_UPSTREAM, i, j], downstream - upstream)
-            swept = 0.5 * omega * width[0, j] * h + extra * width[0, j]
-            drawn = swept * (upstream + more + 0.5 * (over + over_n))
-            pressed = through * (states[PRESSURE, i, j] - states[PRESSURE, n, j])
-            pass_around(pressed, drawn, cells, i, n, j, paths)
-            if cells[EXCESS, i, j] != 0.0:
-                outside(cells[EXCESS, i, j] * 0.5 * omega * (h - h_b) * t, i, j, paths)
-
-
 @compiled(inline=True)
 def pass_along(flow: float, i: int, j: int, paths: Array) -> None:
     """Oil that pressure drives from cell (i, j) to the next one along, (i, j + 1)."""
@@ -155,55 +96,60 @@ def pass_along(flow: float, i: int, j: int, paths: Array) -> None:
 
 
 @compiled()
-def _along(
-    film: np.record, ring: Array, cells: Array, states: Array, motion: GridMotion, paths: Array
+def _pass_columns(
+    film: np.record, ring: Array, places: Array, cells: Array, states: Array, motion: GridMotion, first: int, last: int,
+    rows: Array, paths: Array,
 ) -> None:  # fmt: skip
-    m, k = states.shape[1], states.shape[2]
-    for i in range(m):
-        h = ring[GAP, i] + motion.d_x * ring[SIN, i] - motion.d_y * ring[COS, i]
-        cube, _ = flowing_cube(h, film.roughness)
-        for j in range(k - 1):
-            flow = cube * cells[ALONG, i, j] * (states[PRESSURE, i, j] - states[PRESSURE, i, j + 1])
-            pass_along(flow, i, j, paths)
+    """The flows of rows, a column behind, out of the columns first to last."""
+    m, k, e = states.shape[1], states.shape[2], states.shape[2]
+    for i in range(first, last):
+        n, (near, more, _, _) = i + 1 if i + 1 < m else 0, opening_rate(ring, i, motion)
+        for j in range(k):
+            flow = rows[PRESSED, e]
+            if cells[EDGE, i, j] != 0.0:
+                cube, _ = edge_cube(film, cells, places, motion, i, j)
+                flow += cube * cells[EDGE, i, j] * (states[PRESSURE, i, j] - states[PRESSURE, n, j])
+            pass_around(flow, rows[DRAWN, e], cells, i, n, j, paths)
+            if j < k - 1:
+                pass_along(rows[RAISED, e], i, j, paths)
+            if cells[EXCESS, i, j] != 0.0:
+                outside(cells[EXCESS, i, j] * states[FRACTION, i, j] * (near + places[MIDDLES, j] * more), i, j, paths)
+            e += 1
 
 
 @compiled(makes_arrays=True)
-def _through_ends(
-    film: np.record, ring: Array, cells: Array, states: Array, motion: GridMotion, paths: Array
-) -> None:  # fmt: skip
-    m, k = states.shape[1], states.shape[2]
-    steepness, falls = STEEPNESS / film.scales.ambient, np.empty(m)
-    for far in (False, True):
-        kind, j, b, rise, bend = section_end(film, k, far)
-        if kind == CLOSED:
-            continue
-        if kind == FREE:
-            falls_to_air(film, ring, states[PRESSURE], motion.d_x, motion.d_y, far, falls)
-        for i in range(m):
-            if cells[UNKNOWN, i, j] != 0.0:
-                h = ring[GAP, i] + motion.d_x * ring[SIN, i] - motion.d_y * ring[COS, i]
-                cube, _ = flowing_cube(h, film.roughness)
-                conductance = cube * film.aspect * ring[LENGTH, i] * rise
-                groove = film.share * film.far.pressure if far else 0.0
-                flow, _, _, _ = end_flow(
-                    kind, states[PRESSURE, i, j], states[PRESSURE, i, b], conductance, bend, groove, steepness,
-                    falls[i], ring[BATHED, i],
-                )  # fmt: skip
-                outside(flow, i, j, paths)
-
-
-@compiled()
 def follow_oil(
-    film: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, paths: Array
+    film: np.record, ring: Array, places: Array, cells: Array, states: Array, motion: GridMotion, paths: Array
 ) -> None:  # fmt: skip
-    """The layers ONWARD to GIVEN of paths (PATHS, m, k) <- of the oil of states, see oil_paths of balance.py."""
+    """The layers ONWARD to GIVEN of paths (PATHS, m, k) <- of the oil of states, see OilPaths of balance.py.
+
+    Where surfaces carry more out of a cell than into the next one, which is an opening in part, the opening takes the
+    difference, or gives it."""
     m, k = states.shape[1], states.shape[2]
+    rows, falls, first = np.empty((ROWS, (COLUMNS + 1) * k)), np.empty(m), 0
+    of, at = cells.reshape(-1, m * k), states.reshape(-1, m * k)
     for i in range(m):
         for j in range(k):
             paths[OUT, i, j] = paths[GIVEN, i, j] = 0.0
-    _around(film, ring, width, cells, states, motion, paths)
-    _along(film, ring, cells, states, motion, paths)
-    _through_ends(film, ring, cells, states, motion, paths)
+    while first < m:
+        last = min(first + COLUMNS, m)
+        meet_gaps(film, ring, places, motion, first, last, k, rows)
+        inner = min(last, m - 1)
+        if inner > first:
+            flow_around(film, of, at, motion, first, inner, k, 0, rows)
+        if last == m:
+            flow_around(film, of, at, motion, m - 1, m, k, (last - first - 1) * k, rows)
+        flow_along(of, at, motion.g, first, last, k, rows)
+        _pass_columns(film, ring, places, cells, states, motion, first, last, rows, paths)
+        first = last
+    for far in (False, True):
+        kind, j, _, _, _ = section_end(film, k, far)
+        if kind != CLOSED:
+            falls_to_air(film, ring, places, states[PRESSURE], motion, far, falls)
+            for i in range(m):
+                if cells[UNKNOWN, i, j] != 0.0:
+                    flow, _, _, _ = flow_at_end(film, ring, places, states, motion, far, falls, i)
+                    outside(flow, i, j, paths)
 
 
 @compiled()
@@ -318,17 +264,18 @@ def bring_gas(film: np.record, cells: Array, forward: bool, paths: Array, states
 
 @compiled()
 def take_gas_along(
-    film: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, past: Array,
+    film: np.record, ring: Array, places: Array, cells: Array, states: Array, motion: GridMotion, past: Array,
     paths: Array,
 ) -> float:  # fmt: skip
     """All of the above for a film in a time step: paths (PATHS, m, k) and the gas of states follow the oil of states as
     they are. past: (m, k) of the gas, as for the oil. Returns the largest change of free gas."""
     m, k = past.shape
     for i in range(m):
-        h = ring[GAP, i] + motion.d_x * ring[SIN, i] - motion.d_y * ring[COS, i]
+        near, rise = gap_along(ring[GAP, i], ring[SIN, i], ring[COS, i], motion)
         for j in range(k):
+            h = near + places[MIDDLES, j] * rise
             paths[HEIGHT, i, j], paths[FACTOR, i, j], paths[GAS_PAST, i, j] = h, motion.rate * h, past[i, j]
-    follow_oil(film, ring, width, cells, states, motion, paths)
+    follow_oil(film, ring, places, cells, states, motion, paths)
     return bring_gas(film, cells, motion.omega >= 0.0, paths, states)
 
 

@@ -20,15 +20,14 @@ from numpy.typing import NDArray
 from frbcli.arrays import Array
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.law import CellState
-from frbcli.film.cells.balance.balances import GridMotion
-from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import CARRIED_GAS, FRACTION, PRESSURE, STATES, TURNOVER, UPWIND, cell_states
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
-from frbcli.film.cells.gas.balance import FreeGas, OilPaths, brought, oil_paths, paths_of, with_own_gas
+from frbcli.film.cells.gas.balance import FreeGas, OilPaths, brought, paths_of, with_own_gas
 from frbcli.film.cells.gas.carry import PATHS, follow_oil
 from frbcli.film.cells.loads import pushing
 from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.tilted.motion import seen_by_grid
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_matrix
@@ -42,7 +41,8 @@ class LinearStates(NamedTuple):
     """Derivatives of a film of n cells by its states, w and c of each cell: of its balances, flow (2 n, 2 n) and, by
     the rates of the states, storage (2 n, 2 n); by displacement and velocity over the clearance, by_place and by_rate
     (2 n, c); by omega_J + omega_S, by_total (2 n,); of the c loads in N, push (c, 2 n), and of the share of Couette's
-    torque, sheared (2 n,). c: the 2 of the displacement, or 4 with its growth over the width, see tilted/force.py."""
+    torque, sheared (2 n,). c: the 2 of the displacement, or 4 with its growth over the width, see film_changes of
+    steady_force.py."""
 
     flow: csc_matrix
     storage: csc_matrix
@@ -62,7 +62,7 @@ def linear_states(
 
     assert solution.gas is not None
     grid, w, free = film.grid, solution.w, solution.gas.free
-    settled, (w_at, c_at) = _Settled(film, solution.gas, solution.state.pressure, tilts), _numbers(grid.shape)
+    settled, (w_at, c_at) = _Settled(film, solution.gas, solution.state.pressure), _numbers(grid.shape)
     size, at = 2 * w.size, np.concatenate([w_at, c_at])
     given = at[np.tile(grid.fixed.ravel(), 2)]  # their states stay as they are
     flow = [(np.ones(given.size), given, given)]
@@ -128,9 +128,9 @@ def _numbers(shape: tuple[int, int]) -> tuple[NDArray[np.int64], NDArray[np.int6
 class _Settled:
     """The balances of a film near a settled solution with the free gas `gas`; rated: 1 / (1 + tau r)."""
 
-    def __init__(self, film: VolumeFilm, gas: FreeGas, pressure: Array, tilts: bool) -> None:
-        data, self._tilts = volume_films([film]), tilts
-        self.film, self._own = film, (data.films[0], data.ring[0], data.width[0], data.cells[0])
+    def __init__(self, film: VolumeFilm, gas: FreeGas, pressure: Array) -> None:
+        data = volume_films([film])
+        self.film, self._own = film, (data.films[0], data.ring[0], data.places[0], data.cells[0])
         self._law = np.append(given_parameters(film.law), np.nan)  # where a cell is empty: not asked for here
         _, self.time = film.law.exchanged(pressure, gas.carried.gas, film.scales)
         self.rated = 1.0 / (1.0 + self.time * gas.carried.turnover)
@@ -167,11 +167,8 @@ class _Settled:
 
     def _paths(self, states: Array, motion: Motion) -> OilPaths:
         """Of the oil of the states (STATES, m, k)."""
-        film, (own, ring, width, cells) = self.film, self._own
-        if self._tilts:
-            return oil_paths(CellBalances(film.section, film.grid, motion), states[PRESSURE], states[FRACTION])
-        (x, y), layers = motion.d, np.empty((PATHS, *film.grid.shape))
-        follow_oil(own, ring, width, cells, states, GridMotion(x, y, motion.omega), layers)
+        layers = np.empty((PATHS, *self.film.grid.shape))
+        follow_oil(*self._own, states, seen_by_grid(motion, still=True), layers)
         return paths_of(layers)
 
 

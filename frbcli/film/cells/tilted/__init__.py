@@ -1,1 +1,1 @@
-"""Films whose gap changes along the axis, since their journal tilts: balances, lands, forces with derivatives."""
+"""Journals that tilt: their motion, flows and forces as kernels see them; lands, steady forces with derivatives."""

@@ -14,21 +14,17 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.compiled import Indices
 from frbcli.film.cells.block_cyclic import TILTED, ring_solver
-from frbcli.film.cells.data import TIGHTLY, Records, volume_films
-from frbcli.film.cells.mesh.grid import VolumeGrid
+from frbcli.film.cells.data import TIGHTLY, Records, places_along, volume_films
 
 if TYPE_CHECKING:  # its solver is made of what stands here
     from frbcli.film.cells.tilted.steady_force import TiltedFilm
-
-MIDDLES, EDGES, WIDTHS, PLACES = range(4)
 
 
 class TiltedVolumes(NamedTuple):
     """Lands of equal numbers of cells m x k; films, ring, cells: as VolumeFilms has them, of each land.
 
-    places: (lands, PLACES, k + 1) where the middles of the cells and their edges lie along the axis, 0 at the near end
-    of the bearing and 1 at its far end, and the sizes of the cells over the width of the land; first: (films + 1,)
-    first land of each film, and their number.
+    places: (lands, PLACES, k + 1) along the axis of the bearing; first: (films + 1,) first land of each film, and their
+    number.
     """
 
     films: Records
@@ -46,18 +42,11 @@ def tilted_volumes(
     drops = [drop for film, drop in zip(films, centrifugal, strict=False) for _ in film.lands]
     data = volume_films([land.film for land in lands], drops, settled)
     k = lands[0].film.grid.shape[1]
-    places = np.zeros((len(lands), PLACES, k + 1))
-    for of, land in zip(places, lands, strict=True):
-        grid = land.film.grid
-        of[MIDDLES, :k], of[EDGES], of[WIDTHS, :k] = land.places(grid.height), land.places(grid.z), np.diff(grid.z)
+    grids = [land.film.grid for land in lands]
+    places = np.array([
+        places_along(land.places(grid.height), land.places(grid.z), np.diff(grid.z))
+        for land, grid in zip(lands, grids, strict=True)
+    ])  # fmt: skip
     data.films["solver_at"] = ring_solver(k, TILTED)
     first = np.cumsum([0, *(len(film.lands) for film in films)])
     return TiltedVolumes(data.films, data.ring, data.cells, places, first)
-
-
-def land_places(grid: VolumeGrid) -> Array:
-    """(PLACES, k + 1) as TiltedVolumes has them, over the width of a land alone."""
-    k = len(grid.height)
-    places = np.zeros((PLACES, k + 1))
-    places[MIDDLES, :k], places[EDGES], places[WIDTHS, :k] = grid.height, grid.z, np.diff(grid.z)
-    return places

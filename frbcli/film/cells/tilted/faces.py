@@ -70,40 +70,49 @@ class StencilRows(NamedTuple):
 
 
 @disjoint
+def cubed(gaps: Array, cubes: Array, by_gaps: Array) -> None:
+    """cubes <- of gaps, and by_gaps their derivatives."""
+    for e in range(gaps.shape[0]):
+        square = gaps[e] * gaps[e]
+        cubes[e], by_gaps[e] = gaps[e] * square, 3.0 * square
+
+
+@disjoint
 def pressed(
-    openings: Array, gaps: Array, others: OwnAndNext, growth: float, p: OwnAndNext, slope: OwnAndNext, to: FaceFlows
+    openings: Array, cubes: Array, by_gaps: Array, growth: float, p: OwnAndNext, slope: OwnAndNext, to: FaceFlows
 ) -> None:
     """to <- flows by the pressures p through cubes of gaps.
 
-    openings: conductances of a gap of 1; gaps: at the faces; others: the other two of each cube; growth: by which the
-    derivative by the gap is multiplied; slope: of the pressures.
+    openings: conductances of a gap of 1; by_gaps: derivatives of the cubes by the gaps; growth: by which the derivative
+    by the gap is multiplied; slope: of the pressures.
     """
     for e in range(to.flow.shape[0]):
-        square = others.own[e] * others.next[e] * openings[e]
-        fall, through = p.own[e] - p.next[e], gaps[e] * square
+        fall, through = p.own[e] - p.next[e], cubes[e] * openings[e]
         to.flow[e] = through * fall
         to.by_own[e] = through * slope.own[e]
         to.by_next[e] = through * slope.next[e]
-        to.by_gap[e] = growth * square * fall
+        to.by_gap[e] = growth * (by_gaps[e] * openings[e]) * fall
 
 
 @disjoint
 def drawn(
-    gaps: Array, pulls: Array, forward: bool, growth: float, oil: OwnAndNext, upstream: Array, slope: OwnAndNext,
-    share: OwnAndNext, to: FaceFlows,
+    swept: Array, pulls: Array, forward: bool, diffuses: bool, growth: float, oil: OwnAndNext, upstream: Array,
+    slope: OwnAndNext, share: OwnAndNext, to: FaceFlows,
 ) -> float:  # fmt: skip
     """to <- what the surfaces carry, per share of a cell that is film; what openings in the cells take of it.
 
-    pulls: flow through a gap of 1 full of oil; oil, upstream, forward: see carried_at; slope: of the oil fractions.
+    swept: flows full of oil; pulls: their derivatives by the gaps; oil, upstream, forward: see carried_at; diffuses:
+    whether the surfaces carry the mean oil fraction of both cells, see diffusion.py; slope: of the oil fractions.
     """
     outflow = 0.0
     for e in range(to.flow.shape[0]):
         theta, own, other = carried_at(oil.own[e], oil.next[e], upstream[e], forward)
-        swept = pulls[e] * gaps[e]
-        through = swept * theta
+        if diffuses:
+            theta, own, other = 0.5 * (oil.own[e] + oil.next[e]), 0.5, 0.5
+        through = swept[e] * theta
         to.flow[e] = through
-        to.by_own[e] = swept * own * slope.own[e]
-        to.by_next[e] = swept * other * slope.next[e]
+        to.by_own[e] = swept[e] * own * slope.own[e]
+        to.by_next[e] = swept[e] * other * slope.next[e]
         to.by_gap[e] = growth * pulls[e] * theta
         outflow += (share.own[e] - share.next[e]) * through
     return outflow
@@ -126,36 +135,19 @@ def stored(
 @disjoint
 def balanced(
     share: Array, pressed_in: FaceFlows, pressed_out: FaceFlows, drawn_in: FaceFlows, drawn_out: FaceFlows,
-    raised_in: FaceFlows, raised_out: FaceFlows, left: Array, by_gap_in: Array, by_gap_out: Array,
+    raised_in: FaceFlows, raised_out: FaceFlows, by_gaps: OwnAndNext, left: Array, to: StencilRows,
 ) -> None:  # fmt: skip
-    """left += what flows in less what flows out of cells: around by pressures and by the surfaces, and along;
-    by_gap_in, by_gap_out <- the derivatives of what flows around."""
-    for e in range(left.shape[0]):
+    """left += what flows in less what flows out of cells: around by pressures and by the surfaces, and along; by_gaps
+    <- the derivatives of what flows in and out around; to <- by the derivatives by the unknowns of the cells, added to
+    what is in their centres."""
+    for e in range(share.shape[0]):
         around = pressed_in.flow[e] - pressed_out.flow[e] + share[e] * (drawn_in.flow[e] - drawn_out.flow[e])
         left[e] += around + raised_in.flow[e] - raised_out.flow[e]
-        by_gap_in[e] = pressed_in.by_gap[e] + share[e] * drawn_in.by_gap[e]
-        by_gap_out[e] = pressed_out.by_gap[e] + share[e] * drawn_out.by_gap[e]
-
-
-@disjoint
-def coupled(
-    share: Array, pressed_in: FaceFlows, pressed_out: FaceFlows, drawn_in: FaceFlows, drawn_out: FaceFlows,
-    raised_in: FaceFlows, raised_out: FaceFlows, to: StencilRows,
-) -> None:  # fmt: skip
-    """to <- by the derivatives of what flows in and out of cells, see `balanced`, added to what is in their centres."""
-    for e in range(share.shape[0]):
+        by_gaps.own[e] = pressed_in.by_gap[e] + share[e] * drawn_in.by_gap[e]
+        by_gaps.next[e] = pressed_out.by_gap[e] + share[e] * drawn_out.by_gap[e]
         around = pressed_out.by_own[e] + pressed_in.by_next[e] + share[e] * (drawn_out.by_own[e] - drawn_in.by_next[e])
         to.centre[e] += around + raised_out.by_own[e] + raised_in.by_next[e]
         to.before[e] = -pressed_in.by_own[e] - share[e] * drawn_in.by_own[e]
         to.behind[e] = share[e] * drawn_out.by_next[e] - pressed_out.by_next[e]
         to.below[e] = -raised_in.by_own[e]
         to.above[e] = -raised_out.by_next[e]
-
-
-@disjoint
-def total(numbers: Array) -> float:
-    """The sum of all numbers."""
-    summed = 0.0
-    for e in range(numbers.shape[0]):
-        summed += numbers[e]
-    return summed

@@ -12,25 +12,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass, replace
-from typing import NamedTuple
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.errors import FilmUnsolved
-from frbcli.film.cavitation.law import CellState, Law
-from frbcli.film.cells.balance.plain_clipped import CURVED
-from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, STATES
-from frbcli.film.cells.block_cyclic import solve_blocks
+from frbcli.film.cavitation.law import Law
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
-from frbcli.film.cells.gas.linear import linear_states
-from frbcli.film.cells.linearised import LinearFilm, by_neighbours, lying
+from frbcli.film.cells.linearised import LinearFilm, linear_cells, lying
 from frbcli.film.cells.loads import FilmLoads, GasBalance, OilBalance, Torque, pushed, pushing
 from frbcli.film.cells.mesh.grid import tilted_cells, volume_grid
 from frbcli.film.cells.motion import Motion, Path
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.steady_force import film_at
+from frbcli.film.cells.steady_force import film_at, film_changes
 from frbcli.film.gap import Section, graded_ring
 from frbcli.film.rectangles.film import FieldSlopes, FilmForce
 
@@ -134,33 +129,6 @@ def _sum(vectors: Sequence[tuple[float, float]]) -> tuple[float, float]:
     return sum(x for x, _ in vectors), sum(y for _, y in vectors)
 
 
-def mean_change(film: VolumeFilm, state: CellState, change: Array) -> Array:
-    """(m, k) by how much the mean pressures of a film change with a small change (m, k) of its unknown."""
-    pressure = state.pressure_slope * change
-    if film.clips_between:
-        return clipped_changes(state.pressure - film.scales.cavitation, pressure)
-    return np.where(state.pressure > film.scales.cavitation, pressure, 0.0) if film.law.clips else pressure
-
-
-def clipped_changes(above: Array, change: Array) -> Array:
-    """(m, k) by how much clipped_means changes with a small change (m, k) of the pressures."""
-    before, after, beyond = (np.roll(above, by, axis=0) for by in (1, -1, -2))
-    d_before, d_after, d_beyond = (np.roll(change, by, axis=0) for by in (1, -1, -2))
-    here_full, after_full = above > 0.0, after > 0.0
-    edge = here_full ^ after_full
-    size = np.where(edge, np.abs(above) + np.abs(after), 1.0)
-    x = np.where(here_full & after_full, 1.0, np.where(edge, np.where(here_full, above, after) / size, 0.0))
-    falls = np.where(here_full, (1.0 - x) * change + x * d_after, (1.0 - x) * d_after + x * change)
-    dx = np.where(edge, falls / size, 0.0)
-    y, dy = x**2 * (3.0 - 2.0 * x), 6.0 * x * (1.0 - x) * dx
-    s, ds = before - above - after + beyond, d_before - change - d_after + d_beyond
-    share, by_share = np.where(here_full, 1.0 - 0.5 * y, 0.5 * y), np.where(here_full, -0.5 * dy, 0.5 * dy)
-    curved, by_curved = CURVED * y * s, CURVED * (dy * s + y * ds)
-    to_here = 0.5 * np.where(here_full, dx * above + x * change, 0.0) - by_curved * share - curved * by_share
-    to_after = 0.5 * np.where(after_full, dx * after + x * d_after, 0.0) - by_curved * (1.0 - share) + curved * by_share
-    return np.asarray(to_here + np.roll(to_after, 1, axis=0))
-
-
 COORDINATES = 4  # of the journal: its displacement along x and y, and its tilts about them
 BY_TOTAL = [COORDINATES, 2 * COORDINATES]  # where changes with u end, and with its rate
 
@@ -256,14 +224,14 @@ def tilted_force(
     for number, land in enumerate(film.lands):
         motion, to_u = land.motion(place, rate, total), land.map / land.film.section.clearance
         solver, solution = _solved(land.film, motion, None if start is None else start[number])
-        loads, changes = _land_force(solver, motion, solution)
-        by_u, by_v, by_total = np.split(changes.loads, BY_TOTAL, axis=1)
-        force += land.map.T @ loads
+        changes, by_changes = film_changes(solver, motion, solution, tilts=True)
+        by_u, by_v, by_total = np.split(by_changes, BY_TOTAL, axis=1)
+        force += land.map.T @ _loads(land.film, solver.film.mean_pressure(solution.state))
         by_place += land.map.T @ by_u @ to_u
         by_rate += land.map.T @ by_v @ to_u
         spun += land.map.T @ by_total[:, 0]
         fields.append(solution.w)
-        slopes.append((changes.field[:, :, :COORDINATES] @ to_u, changes.field[:, :, -1]))
+        slopes.append((changes[:, :, :COORDINATES] @ to_u, changes[:, :, -1]))
     law, followed = film.lands[0].film.law, None
     if law.keeps_oil and not law.carries_gas:
         moved, faster = (np.array(each) for each in zip(*slopes, strict=True))
@@ -294,38 +262,6 @@ def _solved(film: VolumeFilm, motion: Motion, start: Array | None) -> tuple[Film
         if start is None:
             raise
         return solver, solver.steady(motion)
-
-
-class LandChanges(NamedTuple):
-    """What changes with u, with its rate and with omega_J + omega_S: of the field (m, k, 9) and of the loads (4, 9), in
-    N, N s and N s."""
-
-    field: Array
-    loads: Array
-
-
-def _land_force(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> tuple[Array, LandChanges]:
-    """Loads (4,) that belong to u in N, and what they and the field change with."""
-    film, state, (m, k) = solver.film, solution.state, solver.film.grid.shape
-    stencil, *slopes = land_slopes(solver, motion, solution)
-    fields = np.concatenate([np.zeros((m, k, k)), *(-each for each in slopes)], axis=2)
-    solve_blocks(stencil, np.zeros((m, k, k)), fields, stencil[0, 0], fields[0, 0])
-    changes = fields[:, :, k:]
-    loads = [_loads(film, mean_change(film, state, changes[:, :, i])) for i in range(changes.shape[2])]
-    return _loads(film, film.mean_pressure(state)), LandChanges(changes, np.array(loads).T)
-
-
-def land_slopes(
-    solver: FilmSolver, motion: Motion, solution: VolumeSolution
-) -> tuple[Array, Array, Array, Array]:
-    """Derivatives of the balances of the cells of a land in its settled state: the stencil (ENTRIES, m, k) by their
-    unknowns, and (m, k, 4) by u and by its rate, (m, k, 1) by omega_J + omega_S, in which they are linear."""
-    (m, k), pace = solution.w.shape, math.copysign(max(abs(motion.omega), 1.0), motion.omega)
-    states, nothing = np.zeros((STATES, m, k)), np.zeros((m, k))
-    states[:CARRIED_GAS], states[BEFORE_UPSTREAM] = astuple(solution.state), solution.before
-    turned = solver.leaving(replace(motion, omega=motion.omega + pace), states, nothing)
-    both, moving = (solver.leaving(motion, states, nothing, g) for g in (1.0, 0.0))
-    return solver.stencil.copy(), (both - moving)[:, :, 1:], moving[:, :, 1:], (turned - moving)[:, :, :1] / pace
 
 
 def unit_loads(film: VolumeFilm) -> Array:
@@ -365,25 +301,11 @@ def linear_tilted(
 
 
 def _linear_land(land: TiltedLand, place: Array, total: float, start: Array | None) -> LinearFilm:
-    from scipy.sparse import diags
-
     film, motion = land.film, land.motion(place, np.zeros(COORDINATES), total)
     solver, to_u = FilmSolver(film), land.map / film.section.clearance
     solution = solver.steady(motion, start, upwind=True)
-    if film.law.carries_gas:
-        slopes = linear_states(film, motion, solution, np.zeros(film.grid.shape), tilts=True)
-        moved = slopes.by_place @ to_u, slopes.by_rate @ to_u, slopes.by_total
-        push = land.map.T @ slopes.push
-        return LinearFilm(slopes.flow, slopes.storage, *moved, push, slopes.sheared, solution.field, ordered=True)
-    stencil, by_u, by_v, by_total = land_slopes(solver, motion, solution)
-    stored = np.where(film.grid.fixed, 0.0, film.grid.area * film.gaps(motion) * solution.state.fraction_slope)
-    return LinearFilm(
-        flow=by_neighbours(stencil),
-        storage=diags(stored.ravel(), format="csc"),
-        by_place=by_u.reshape(-1, COORDINATES) @ to_u,
-        by_rate=by_v.reshape(-1, COORDINATES) @ to_u,
-        by_total=by_total.ravel(),
-        push=land.map.T @ (unit_loads(film) * solution.state.pressure_slope.ravel()),
-        sheared=np.zeros(stored.size),  # films that follow a tilt have the torque of a full one
-        field=solution.field,
-    )
+    full = np.zeros(film.grid.shape)  # films that follow a tilt have the torque of a full one
+    cells = linear_cells(solver, motion, solution, full, tilts=True)
+    return replace(
+        cells, by_place=cells.by_place @ to_u, by_rate=cells.by_rate @ to_u, push=land.map.T @ cells.push
+    )  # fmt: skip
