@@ -117,19 +117,23 @@ class FilmSolver:
         self._states, self._stencil = np.zeros((STATES, m, k)), np.zeros((ENTRIES, m, k))
         self._before, self._paths = np.full((m, k), UPWIND), np.zeros((PATHS, m, k))
         self._blocks, self._fields, self._flows = np.zeros((m, k, k)), np.zeros((m, k, k + SIDES)), np.zeros(FLOWS)
+        self.left_over = np.zeros((m, k))  # what the balances of the last unknowns left over, to Newton's next step
 
-    def steady(self, motion: Motion, start: Array | None = None, upwind: bool = False) -> VolumeSolution:
+    def steady(
+        self, motion: Motion, start: Array | None = None, upwind: bool = False, enough: float = 0.0
+    ) -> VolumeSolution:
         """Cells whose oil fraction does not change while the journal moves as it does.
 
         Oil is carried upwind: what passes a cavity of one pressure does not depend on the oil fraction in it. Where the
         law draws oil in, the pressure in the cavity follows from that oil: then it is carried with second order, each
         of REPEATED solutions holding the oil fractions of the one before.
 
-        start: field of a solution to begin from, else a full film; upwind: whether oil is carried upwind by every law.
+        start: field of a solution to begin from, else a full film; upwind: whether oil is carried upwind by every law;
+        enough: residual over its terms below which the last step is left to the caller, of laws that keep no oil.
         Gas that goes with the oil from the start needs no solution without it before. Where the supply gives a flow at
         most, the openings are filled accordingly. Raises FilmUnsolved. """
         if not is_limited(self.film.section):
-            return self._steady(motion, start, upwind)
+            return self._steady(motion, start, upwind, enough)
 
         def solve(filling: float, near: VolumeSolution | None) -> VolumeSolution:
             return self.filled(filling, motion, start if near is None else near.w, upwind)
@@ -146,7 +150,7 @@ class FilmSolver:
         own, _, _, _ = self._parts
         own.share, own.fraction = feed_at(self.film, filling)
 
-    def _steady(self, motion: Motion, start: Array | None, upwind: bool) -> VolumeSolution:
+    def _steady(self, motion: Motion, start: Array | None, upwind: bool, enough: float = 0.0) -> VolumeSolution:
         grid, law = self.film.grid, self.film.law
         self._before = np.full(grid.shape, UPWIND)
         rate = gap_rate(motion.velocity_at(grid.height), grid.centre[:, None])
@@ -157,7 +161,7 @@ class FilmSolver:
         self._settle_gas()
         if start is None:
             start = full_cells(self.film, motion) if self.film.edged else self.film.full()
-        solution = self._solve(motion, start, storage)
+        solution = self._solve(motion, start, storage, enough=0.0 if law.keeps_oil else enough)
         for _ in range(repeated):
             self._before = before_upstream(solution.state.fraction, motion.omega)
             solution = self._again(motion, solution, storage)
@@ -249,15 +253,18 @@ class FilmSolver:
             follow_oil(film, ring, width, cells, self._states, at, self._paths)
         return replace_oil(film, cells, self._states, self._paths)
 
-    def _solve(self, motion: Motion, start: Array, storage: Storage, close: float = CLOSE) -> VolumeSolution:
-        """Solve by the first attempt that converges. close: what free gas and its oil may be off by."""
+    def _solve(
+        self, motion: Motion, start: Array, storage: Storage, close: float = CLOSE, enough: float = 0.0
+    ) -> VolumeSolution:
+        """Solve by the first attempt that converges. close: what free gas and its oil may be off by; enough: see
+        steady."""
         spent, failure = 0, ""
         start = np.ascontiguousarray(start, dtype=np.float64)  # as the kernels take it
         gas = self._states[CARRIED_GAS:BEFORE_UPSTREAM].copy()
         with_gas = GAS_ATTEMPTS if close < BEGUN else GAS_BEGINS
         for attempt in with_gas if self._carries else ATTEMPTS:
             self._states[CARRIED_GAS:BEFORE_UPSTREAM] = gas
-            w, iterations, failure = self._iterate(motion, start, storage, attempt, close)
+            w, iterations, failure = self._iterate(motion, start, storage, attempt, close, enough)
             spent += iterations
             if not failure and np.min(self._states[FRACTION]) < DRY:
                 failure = RUNS_DRY  # also where a matrix was so near to a singular one that w leapt far away
@@ -269,7 +276,7 @@ class FilmSolver:
         raise FilmUnsolved(f"the film did not converge in {spent} Newton iterations ({tried}): {failure}")
 
     def _iterate(
-        self, motion: Motion, w: Array, storage: Storage, attempt: Attempt, close: float
+        self, motion: Motion, w: Array, storage: Storage, attempt: Attempt, close: float, enough: float
     ) -> tuple[Array, int, str]:
         """(w, iterations, what is wrong or nothing)."""
         passed, mixing = self._passed(motion), GasMixing(self.film.law.gas_content) if self._carries else None
@@ -284,6 +291,8 @@ class FilmSolver:
             off = self._off
             settled = largest < ROUND_OFF or 0.5 * largest_before <= largest < SETTLED
             if settled and (off < GAS_ROUND_OFF or 0.5 * off_before <= off < GAS_SETTLED):
+                return w, iteration, ""
+            if largest < enough:
                 return w, iteration, ""
             if 0.0 < off < close and largest < close:
                 return w, iteration, ""
@@ -320,6 +329,7 @@ class FilmSolver:
         self._stencil[CENTRE] += kept * states[FRACTION_SLOPE]
         right = self._fields[:, :, w.shape[1]]
         right -= kept * states[FRACTION]
+        self.left_over = right.copy()
         return -right
 
     def _set_states(self, w: Array) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.compiled import given_parameters
+from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balance.balances import FLOWS, GridMotion, balances
 from frbcli.film.cells.balance.boundaries import ALL
 from frbcli.film.cells.balance.newton_step import film_loads
@@ -31,6 +32,7 @@ from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.rectangles.film import FieldSlopes, FilmForce
 
 SPEED_STEP = 1e-6  # share of the speed by which it is changed for a derivative
+NEARLY = 1e-9  # residual over its terms that Newton's last step, which also tells the slopes, makes round-off
 NUDGE = 1e-4  # of the gap, the pace and the filling, for derivatives of a film whose supply is limited
 
 
@@ -59,34 +61,44 @@ def steady_force(
     motion = Motion((float(d[0]), float(d[1])), (float(v[0]), float(v[1])), omega)
     solver = _solver(film, motion)
     try:
-        solution = solver.steady(motion, start)
+        solution = solver.steady(motion, start, enough=NEARLY)
     except FilmUnsolved:
         if start is None:
             raise
-        solution = solver.steady(motion)
+        solution = solver.steady(motion, enough=NEARLY)
     return settled_force(solver, motion, solution)
 
 
 def settled_force(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> FilmForce:
-    """Force and derivatives, in SI units, of a steady film that a solver has solved, with the slopes of its field if it
-    is mass-conserving. Where the edge of its cavity lies within cells, its sources follow the motion, too."""
+    """Force and derivatives, in SI units, of a steady film that a solver has solved but for Newton's last step, taken
+    here, with the slopes of its field if it is mass-conserving. Where the edge of its cavity lies within cells, its
+    sources follow the motion, too."""
     if solution.filling < ALL:
         return _force_at_flow(solver, motion, solution)
     film, data, (m, k), clearance = solver.film, solver.data, solution.w.shape, solver.film.section.clearance
     own, ring, width, cells = data.films[0], data.ring[0], data.width[0], data.cells[0]
-    states, law = np.zeros((STATES, m, k)), np.append(given_parameters(film.law), np.nan)
+    states, law, rise = np.zeros((STATES, m, k)), np.append(given_parameters(film.law), np.nan), gap_rise(film, motion)
     if solution.gas is not None:
         states[CARRIED_GAS], states[TURNOVER] = solution.gas.carried
     states[BEFORE_UPSTREAM] = solution.before
-    cell_states(own, cells, law, 0.0, solution.w, states)
-    if film.edged:
-        set_edges(film, gap_rise(film, motion), solution.w, states)
+
+    def set_states(w: Array) -> None:
+        cell_states(own, cells, law, 0.0, w, states)
+        if film.edged:
+            set_edges(film, rise, w, states)
+
+    set_states(solution.w)
     stencil, by_place, by_rate, by_total = oil_slopes(own, ring, width, cells, states, motion)
     if film.edged:
         for slopes, source in zip((by_place, by_rate), edge_slopes(film, motion, states[PRESSURE]), strict=True):
             slopes -= cells[AREA][:, :, None] * source
-    fields = np.concatenate([np.zeros((m, k, k)), -by_place, -by_rate, -by_total], axis=2)
+    left = solver.left_over[:, :, None]
+    fields = np.concatenate([np.zeros((m, k, k)), left, -by_place, -by_rate, -by_total], axis=2)
     solve_blocks(stencil, np.zeros((m, k, k)), fields, stencil[0, 0], fields[0, 0])
+    change, moved, moving, faster = np.split(fields[:, :, k:], [1, 3, 5], axis=2)
+    w = solution.w + change[:, :, 0]
+    set_states(w)
+    state = CellState(*states[:CARRIED_GAS])
 
     def pushed(changes: Array) -> Array:
         """(2, n) change of the force in N with up to two changes (m, k, n) of the field."""
@@ -94,17 +106,16 @@ def settled_force(solver: FilmSolver, motion: Motion, solution: VolumeSolution) 
         delta[:, :, k + BY_X : k + BY_X + count] = changes
         return np.array(film_loads(own, ring, cells, states, delta)[2:]).reshape(2, 2)[:, :count]
 
-    moved, moving, faster = np.split(fields[:, :, k:], [2, 4], axis=2)
     followed = None
     if not film.law.carries_gas:
-        place, fraction = clearance * np.array(motion.d), solution.state.fraction_slope
+        place, fraction = clearance * np.array(motion.d), state.fraction_slope
         followed = FieldSlopes(place, motion.omega, moved / clearance, faster[:, :, 0], fraction, pushed(faster)[:, 0])
     return FilmForce(
-        np.array(force(film, film.mean_pressure(solution.state))),
+        np.array(force(film, film.mean_pressure(state))),
         pushed(moved) / clearance,
         pushed(moving) / clearance,
-        solution.field,
-        None if film.edged else solution.state.fraction,
+        w if solution.stages is None else solution.stages,
+        None if film.edged else state.fraction,
         followed,
     )
 
