@@ -135,7 +135,7 @@ class WarmMachines:
                 resting = resting.without_films
             resting = resting_position(system, omega, None, search, resting)
             bodies = np.concatenate([[omega], resting.ring_speeds])
-            power, flow = _film_heat(system, resting.journals, bodies)
+            power, flow = _film_heat(system, resting, bodies)
             if self._concentric:
                 flow = self._heat.concentric * clearances**3 / viscosities
             return FilmHeat(power, flow, bodies)
@@ -155,20 +155,23 @@ class WarmMachines:
         return WarmMachine(system, resting, steady, film_temperatures(steady, system.names), rings)
 
 
-def _film_heat(system: System, journals: Array, bodies: Array) -> tuple[Array, Array]:
-    """Power in W and flow through the ends in m^3/s, (films,) each, of a machine at rest. journals (films, 2) in m;
-    bodies: (1 + rings,) speeds of rotor and rings in rad/s. Raises NotConverged.
+def _film_heat(system: System, resting: RestingPosition, bodies: Array) -> tuple[Array, Array]:
+    """Power in W and flow through the ends in m^3/s, (films,) each, of a machine at rest. bodies: (1 + rings,) speeds
+    of rotor and rings in rad/s. Raises NotConverged.
 
     Journal and shell put P = -M_J omega_J - M_S omega_S - F . (v_J - v_S) into a film. With Couette's resistance k to
     the slip and the force F at the displacement e this is k (omega_J - omega_S)^2 + (e x F)(omega_J + omega_S)/2 -
     F . e'. Between rough surfaces the friction of the summits makes heat in the same film.
     """
-    speeds = list(zip(journals, (system.turning[:, :2] @ bodies).tolist(), system.drags, strict=True))
+    turning = (system.turning[:, :2] @ bodies).tolist()
     rows = [
-        system.films.power_and_flow(i, system.felt(i, place), total, slip, drag)
-        for i, (place, (total, slip), drag) in enumerate(speeds)
+        system.films.power_and_flow(i, system.felt(i, place), total, slip, drag, near)
+        for i, (place, (total, slip), drag, near) in enumerate(
+            zip(resting.journals, turning, system.drags, resting.films or (None,) * len(turning), strict=True)
+        )
     ]
     power, flow = np.array(rows).T
     if system.asperities is not None:
-        power = power + [system.rubbing(i).power(place, *turns) for i, (place, turns, _) in enumerate(speeds)]
+        speeds = enumerate(zip(resting.journals, turning, strict=True))
+        power = power + [system.rubbing(i).power(place, *turns) for i, (place, turns) in speeds]
     return power, flow

@@ -192,10 +192,12 @@ class Films(ABC):
         """Oil in m^3 that came into all films that keep theirs, left them, and was created; empty if there are none."""
         return {}
 
-    def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
+    def power_and_flow(
+        self, i: int, place: Array, total: float, slip: float, drag: float, near: FilmForce | None = None
+    ) -> tuple[float, float]:
         """Power in W that a film at rest dissipates, and flow in m^3/s through its open ends. drag: eta R^3 B / C of
-        the bearing in N m s. Raises NotConverged, and NotImplementedError of a kind that cases with heat do not
-        have."""
+        the bearing in N m s; near: see force. Raises NotConverged, and NotImplementedError of a kind that cases with
+        heat do not have."""
         raise NotImplementedError
 
     def heat_ends(self) -> Any:
