@@ -59,16 +59,22 @@ class RestingPosition:
         return speeds
 
 
+def lagrange(place: float, places: Sequence[float]) -> Array:
+    """(k,) weights of values at k places, whose sum is the value at `place` on the polynomial through them; infinite
+    or NaN where two places are one."""
+    known, own = np.array(places), np.eye(len(places))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        factors = np.where(own, 1.0, place - known) / (known[:, None] - known + own)
+        return np.asarray(np.prod(factors, axis=1))
+
+
 def weights_at(omega: float, omegas: Sequence[float]) -> Array:
-    """(k,) weights of values at the last k of `omegas`, whose sum is the value at omega on the polynomial through them;
-    of as many as are trusted, at least of the last one."""
+    """(k,) weights of values at the last k of `omegas`, whose sum is the value at omega; of as many as are trusted, at
+    least of the last one."""
     for count in range(min(len(omegas), REMEMBERED), 1, -1):
-        known = np.array(omegas[-count:])
-        apart, own = known[:, None] - known, np.eye(count)
-        if (apart + own).all():
-            weights = np.asarray(np.prod(np.where(own, 1.0, omega - known) / (apart + own), axis=1))
-            if float(np.abs(weights).sum()) < TRUSTED:
-                return weights
+        weights = lagrange(omega, omegas[-count:])
+        if float(np.abs(weights).sum()) < TRUSTED:
+            return weights
     return np.ones(1)
 
 

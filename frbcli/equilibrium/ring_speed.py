@@ -91,15 +91,17 @@ def _drag_slopes(system: System, places: Array, films: Sequence[FilmForce]) -> t
     """Derivatives of the drags by the coordinates of the journals (films, c), and by omega_J + omega_S of each film
     (films,), the oil following where it is known how."""
 
+    follows = any(system.remembering)  # other films are full
+
     def change(step: Array, faster: float = 0.0) -> Array:
         return moved(step, faster) - moved(-step, -faster)
 
     def moved(step: Array, faster: float) -> Array:
-        oil = [
+        oil = films if not follows else [
             film if film.slopes is None else film.foreseen(place, film.slopes.total + faster)
             for film, place in zip(films, places + step, strict=True)
-        ]
-        return drags(system, places + step, oil if any(system.remembering) else films)
+        ]  # fmt: skip
+        return drags(system, places + step, oil)
 
     slopes = np.zeros_like(places)
     for k, unit in enumerate(np.eye(places.shape[1])):
@@ -107,9 +109,9 @@ def _drag_slopes(system: System, places: Array, films: Sequence[FilmForce]) -> t
         reach = np.abs(system.films.ends(ahead)).reshape(len(places), -1).max(axis=1)
         step = NUDGE / reach[:, None] * ahead
         slopes[:, k] = change(step) / (2.0 * step[:, k])
-    if not any(film.slopes for film in films):
+    if not follows:
         return slopes, np.zeros(len(films))
-    faster = NUDGE * max(1.0, *(abs(film.slopes.total) for film in films if film.slopes))
+    faster = NUDGE * max([1.0, *(abs(film.slopes.total) for film in films if film.slopes)])
     return slopes, change(np.zeros_like(places), faster) / (2.0 * faster)
 
 
