@@ -32,7 +32,7 @@ from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.rectangles.film import FieldSlopes, FilmForce
 
 SPEED_STEP = 1e-6  # share of the speed by which it is changed for a derivative
-NEARLY = 1e-9  # residual over its terms that Newton's last step, which also tells the slopes, makes round-off
+NEARLY = 1e-11  # residual over its terms that Newton's last step, which also tells the slopes, makes round-off
 NUDGE = 1e-4  # of the gap, the pace and the filling, for derivatives of a film whose supply is limited
 
 
