@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.arrays import Array
-from frbcli.equilibrium.newton import ForceBalance, Search, search_rest
+from frbcli.equilibrium.newton import ForceBalance, Search, SearchEnd, search_rest
 from frbcli.equilibrium.ring_speed import dragged_speeds, pin_angles, ring_balance
 from frbcli.errors import NotConverged
 from frbcli.film.contact_gap import ELASTIC_LIMIT
@@ -25,6 +25,7 @@ from frbcli.rotor.assembly import HeldRotor, LinearRotor, held_rotor, sprung
 from frbcli.rotor.port import pushed, settled
 from frbcli.scene.machine.system import System
 
+FilmBalance = ForceBalance[tuple[FilmForce, ...]]
 SEARCH = Search(step=1e-10, force=0.0, share=1e-8, gap=1.0 - LARGEST_ECCENTRICITY)
 STILL = 1e-6  # N: round-off of the films of a rotor without weight
 ARM = 100.0  # clearances: torques on rings over it count next to forces, and not too much before the speeds are near
@@ -51,6 +52,11 @@ class RestingPosition:
     def without_films(self) -> RestingPosition:
         """The position alone, to begin from with other films."""
         return replace(self, films=(), lacking=None)
+
+    def moved(self, displacements: Array, ring_speeds: Array) -> RestingPosition:
+        """This position moved by (n,) and (rings,), to begin from; journals are not followed."""
+        moved, faster = self.displacements + displacements, self.ring_speeds + ring_speeds
+        return replace(self, displacements=moved, ring_speeds=faster)
 
     def velocities(self, system: System) -> Array:
         """(n,) velocities of all degrees of freedom: the rings turn."""
@@ -126,15 +132,16 @@ def resting_position(
         return machine.position(machine.held.shape, ())
     films, lacking = ((), None) if neighbour is None else (neighbour.films, neighbour.lacking)
 
-    def balance(
-        unknowns: Array, before: ForceBalance[tuple[FilmForce, ...]] | None
-    ) -> ForceBalance[tuple[FilmForce, ...]]:
-        return machine.balance(unknowns, before.films if before else films)
+    def sought(machine: RestEquations, first: Array, reach: float) -> SearchEnd[tuple[FilmForce, ...]]:
+        def balance(unknowns: Array, before: FilmBalance | None) -> FilmBalance:
+            return machine.balance(unknowns, before.films if before else films)
+
+        return search_rest(balance, first, partial(machine.ends, reach=reach), search, lacking, machine.turned)
 
     left, tried = np.inf, 0
-    for first, reach in machine.starts(start, neighbour):
+    for first, reach, sticks in machine.starts(start, neighbour):
         tried += 1
-        end = search_rest(balance, first, partial(machine.ends, reach=reach), search, lacking, machine.turned)
+        end = sought(machine, sought(replace(machine, sticks=True), first, reach).position if sticks else first, reach)
         if end.settled and machine.outmost(end.position, reach) < LARGEST_ECCENTRICITY:
             return replace(machine.position(end.position, end.balance.films), lacking=end.lacking)
         left = min(left, end.balance.left)
@@ -174,10 +181,11 @@ def _remedy(machine: RestEquations) -> str:
 @dataclass(frozen=True)
 class RestEquations:
     """A machine at omega rad/s. Its unknowns (n,) are its displacements in m and rad, and in place of the angles of its
-    rings their speeds over a unit."""
+    rings their speeds over a unit. sticks: whether its rings are held."""
 
     system: System
     omega: float
+    sticks: bool = False
 
     @cached_property
     def held(self) -> HeldRotor:
@@ -230,8 +238,9 @@ class RestEquations:
         """By how much a step changes the speed of any ring, over the speed of the rotor."""
         return float(np.abs(step[list(self.system.spins)]).max(initial=0.0)) / self.system.length
 
-    def starts(self, start: Array | None, neighbour: RestingPosition | None) -> Iterator[tuple[Array, float]]:
-        """Unknowns to begin from, each with its reach: those near by, the centre, and journals under their load."""
+    def starts(self, start: Array | None, neighbour: RestingPosition | None) -> Iterator[tuple[Array, float, bool]]:
+        """Unknowns to begin from, each with its reach, and whether rings stick at first: those near by, the centre, and
+        journals under their load."""
         system, clearances = self.system, np.array(self.system.clearances)[:, None]
         if neighbour is not None and start is None:
             start = neighbour.displacements
@@ -239,7 +248,7 @@ class RestEquations:
             near = self.with_rings(start, None if neighbour is None else neighbour.ring_speeds)
             reach = 1.0 if system.shell is None or self.outmost(near, 1.0) < 1.0 else ELASTIC_LIMIT
             if self.outmost(near, reach) < LARGEST_ECCENTRICITY:
-                yield near, reach
+                yield near, reach, False
         loads = self.held.load.reshape(-1, 2)
         size = np.linalg.norm(loads, axis=1, keepdims=True)
         along = np.divide(loads, size, out=np.zeros_like(loads), where=size > 0.0)
@@ -251,12 +260,12 @@ class RestEquations:
         if system.shell is not None and self.still.any():
             deep = along * self._pressed(system.shell, carried)[:, None]
             tries += [(np.where(self.still[:, None], deep, each), ELASTIC_LIMIT) for each in journals]
-        sticking = [np.zeros(system.ring_count)] if system.rough_rings else []
-        for speeds in (None, *sticking):
+        for sticks in (False, True) if system.rough_rings else (False,):
+            speeds = np.zeros(system.ring_count) if sticks else None
             for each, reach in tries:
                 unknowns = self.with_rings(self.held.shape + self.held.following @ each.ravel(), speeds)
                 if self.outmost(unknowns, reach) < 1.0:
-                    yield unknowns, reach
+                    yield unknowns, reach, sticks
 
     def _pressed(self, shell: ElasticShell, loads: Array) -> Array:
         """(films,) m by which films that carry nothing let their journals into their elastic shells, loads (films,) in
@@ -273,7 +282,7 @@ class RestEquations:
         unknowns[list(self.system.spins)] = speeds / self._ring_unit
         return unknowns
 
-    def balance(self, unknowns: Array, near: tuple[FilmForce, ...]) -> ForceBalance[tuple[FilmForce, ...]]:
+    def balance(self, unknowns: Array, near: tuple[FilmForce, ...]) -> FilmBalance:
         """What acts on the rotor, and the torques on its rings over an arm. near: films near by, from whose fields
         finite-volume films are sought, if there are any."""
         system, rotor, (load, stiffness) = self.system, self.system.rotor, self._sprung
@@ -293,7 +302,7 @@ class RestEquations:
             slope[spins] = rings.torques_by_place @ rotor.journals.reshape(-1, rotor.size) / arm
             slope[np.ix_(spins, spins)] = rings.torques_by_speed * unit / arm
             surplus[spins] = rings.torques / arm
-            stopped = np.array(spins)[system.pinned]
+            stopped = np.array(spins)[system.pinned | self.sticks]
             surplus[stopped], slope[stopped], slope[:, stopped] = -unknowns[stopped], 0.0, 0.0
             slope[stopped, stopped] = -1.0
         return ForceBalance(surplus, slope, films)

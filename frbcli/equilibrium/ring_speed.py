@@ -58,18 +58,6 @@ def dragged_speeds(system: System, omega: float, places: Array) -> Array:
     return np.asarray(np.where(system.pinned, 0.0, omega) * (drag @ inner) / (drag @ (inner | outer)))
 
 
-def summit_torque(system: System, ring: int, omega: float, places: Array, speeds: Array) -> float:
-    """Torque in N m on a ring by the friction of rough surfaces, at speeds (rings,) in rad/s. What the rotor puts on a
-    film is carried by the summits in part, whose force has no share in the moment of the film."""
-    torque, totals, slips = 0.0, system.omegas(omega, speeds), system.slips(omega, speeds)
-    for i in np.flatnonzero((system.bodies == ring).any(axis=1)):
-        shell = 0.5 * float(totals[i] - slips[i])
-        on_journal, on_shell, moment = system.rubbing(int(i)).pulled(places[i], float(slips[i]), shell)
-        torque += on_journal if system.bodies[i, 0] == ring else on_shell
-        torque += 0.5 * moment if system.torque == "all" else 0.0
-    return torque
-
-
 def across(place: Array) -> Array:
     """(c,) how a gap that turns backwards with 1 rad/s moves, of a journal at `place` (c,). The moment of a force (c,)
     about the middle of the shell is place @ across(force)."""
@@ -155,13 +143,9 @@ def ring_balance(system: System, bodies: Array, places: Array, films: tuple[Film
     rubbed = rubbed_rings(system, bodies, places)
     alone = tuple(film.plus(summits, -1.0) for film, summits in zip(films, rubbed.summits, strict=True))
     torques, by_speed, by_place = ring_torques(system, bodies, places, alone)
-    if system.rough_rings:
-        turns = bodies[1:]
-        rings = range(system.ring_count)
-        torques = torques + [summit_torque(system, ring, float(bodies[0]), places, turns) for ring in rings]
     along = np.array([following(film, place) for film, place in zip(alone, places, strict=True)])
     forces = along[:, :, None] * system.turning[:, None, SUM, 1:] + rubbed.forces_by_speed
-    return RingBalance(torques, by_speed + rubbed.torques_by_speed, by_place + rubbed.torques, forces)
+    return RingBalance(torques + rubbed.pulls, by_speed + rubbed.torques_by_speed, by_place + rubbed.torques, forces)
 
 
 def pin_angles(system: System, omega: float, places: Array, films: tuple[FilmForce, ...]) -> Array:
@@ -170,10 +154,9 @@ def pin_angles(system: System, omega: float, places: Array, films: tuple[FilmFor
     angles = np.zeros(system.ring_count)
     if system.pinned.any():
         bodies = np.append(omega, np.zeros(system.ring_count))
-        torques, _, _ = ring_torques(system, bodies, places, films or (none_of(places.shape[1]),) * len(places))
+        torques = ring_balance(system, bodies, places, films or (none_of(places.shape[1]),) * len(places)).torques
         for ring in np.flatnonzero(system.pinned):
-            rubbed = summit_torque(system, int(ring), omega, places, bodies[1:]) if system.rough_rings else 0.0
-            angles[ring] = pin_angle(system.pins[ring], float(torques[ring]) + rubbed)
+            angles[ring] = pin_angle(system.pins[ring], float(torques[ring]))
     return angles
 
 
@@ -202,11 +185,13 @@ def turned_by(system: System, bodies: Array, places: Array) -> Array:
 
 @dataclass(frozen=True)
 class RubbedRings:
-    """How the summits between rough surfaces follow a machine about its rest. summits: their forces; torques,
-    torques_by_rate: (rings, c films) on the rings, derivatives by the places of the journals and by their velocities;
-    torques_by_speed: (rings, rings) by the speeds of the rings; forces_by_speed: (films, c, rings) of the forces."""
+    """How the summits between rough surfaces follow a machine about its rest. summits: their forces; pulls: (rings,)
+    their torques on the rings, N m; torques, torques_by_rate: (rings, c films) derivatives of these by the places of
+    the journals and by their velocities; torques_by_speed: (rings, rings) by the speeds of the rings; forces_by_speed:
+    (films, c, rings) of the forces."""
 
     summits: tuple[FilmForce, ...]
+    pulls: Array
     torques: Array
     torques_by_rate: Array
     torques_by_speed: Array
@@ -217,7 +202,7 @@ def rubbed_rings(system: System, bodies: Array, places: Array) -> RubbedRings:
     """Of a machine at rest at places (films, c); bodies: see ring_torques."""
     rings, (count, c) = system.ring_count, places.shape
     torques, by_rate, by_speed = np.zeros((rings, count * c)), np.zeros((rings, count * c)), np.zeros((rings, rings))
-    forces, alone = np.zeros((count, c, rings)), []
+    forces, pulls, alone = np.zeros((count, c, rings)), np.zeros(rings), []
     for i, place in enumerate(places):
         total, slip = system.turning[i, SUM], system.turning[i, SLIP]
         shares = np.array([slip, 0.5 * (total - slip)])  # of rotor and rings in slip and speed of the shell
@@ -233,7 +218,8 @@ def rubbed_rings(system: System, bodies: Array, places: Array) -> RubbedRings:
         for side, ring in enumerate(system.bodies[i].tolist()):
             if ring >= 0:
                 torque = by_motion[ON_JOURNAL + side]
+                pulls[ring] += torque[VALUE]
                 torques[ring, own] += torque[BY_X:BY_V_X]
                 by_rate[ring, own] += torque[BY_V_X:BY_SLIP]
                 by_speed[ring] += torque[BY_SLIP:] @ shares[:, 1:]
-    return RubbedRings(tuple(alone), torques, by_rate, by_speed, forces)
+    return RubbedRings(tuple(alone), pulls, torques, by_rate, by_speed, forces)

@@ -148,15 +148,16 @@ class StaticMachines:
             start = _foreseen(omega, [(each.omega, each.at_rest) for each in path]).without_films
         path, settled = path if follows else (), not self._memory
         meshes, others = static.others if with_error else (), list[tuple[FilmsAtRest, float]]()
-        if static.on_cells:  # a coarse mesh also brings the journals near to where they rest
-            coarse = meshes or (static.others[:1] if not path else ())
-            start, others = _on_others(coarse, omega, path, start, NEARLY_ON_CELLS, settled)
+        scouts = static.on_cells and not path  # coarse meshes bring the journals near to where they rest
+        if scouts:
+            start, others = _on_others(meshes or static.others[:1], omega, (), start, NEARLY_ON_CELLS, settled)
         if path:
             start = _foreseen(omega, [(each.omega, each.at_rest) for each in path])
         position = resting_position(static.system, omega, None, self._search, start)
         at_rest = films_at_rest(static.system, omega, position, settled)
-        if not static.on_cells:
-            _, others = _on_others(meshes, omega, path, position.without_films, _nearly(static.system, at_rest))
+        if not scouts:
+            search = NEARLY_ON_CELLS if static.on_cells else _nearly(static.system, at_rest)
+            _, others = _on_others(meshes, omega, path, position.without_films, search, settled)
         counted = others if with_error else []
         films = tuple(_resting_film(static, omega, i, at_rest, counted) for i in range(len(at_rest.forces)))
         dynamic = _dynamic(static.system, omega, at_rest) if self._memory else ()
@@ -183,15 +184,22 @@ def _on_others(
     meshes: tuple[MeshFilms, ...], omega: float, path: Sequence[MachineAtRest], start: RestingPosition | None,
     search: Search, settled: bool = True,
 ) -> tuple[RestingPosition | None, list[tuple[FilmsAtRest, float]]]:  # fmt: skip
-    """The machine on several meshes, sought from where it rests on each at the speeds of the path, else on the mesh
-    before; the last position, without films; meshes on which no position is found are left out."""
+    """The machine on several meshes, sought from `start`, at a distance as the machines of the path have it on each, or
+    else from where it rests on the mesh before; the last position, without films; meshes on which no position is found
+    are left out."""
     others, path = [], [machine for machine in path if len(machine.others) == len(meshes)]
     for number, mesh in enumerate(meshes):
-        near = _foreseen(omega, [(each.omega, each.others[number][0]) for each in path]) if path else start
+        near = start
+        if start is not None and path:
+            own, its = (
+                _foreseen(omega, [(each.omega, films) for each, films in zip(path, known, strict=True)])
+                for known in ([each.at_rest for each in path], [each.others[number][0] for each in path])
+            )
+            near = its.moved(start.displacements - own.displacements, start.ring_speeds - own.ring_speeds)
         try:
             position = resting_position(mesh.system, omega, None, search, near)
             others.append((films_at_rest(mesh.system, omega, position, settled), mesh.share))
-            start = position.without_films
+            start = start if path else position.without_films
         except NotConverged:
             continue
     return start, others
