@@ -35,7 +35,7 @@ ON_CELLS = replace(SEARCH, negligible=SEARCH.step)
 SCOUT = replace(SEARCH, step=1e-6)  # of a coarse mesh: the step after it is a hundredth of that at most
 # Of other meshes, whose differences are shown to one or two digits, from 3e-5 on: slopes of finite-volume films lack
 # what the law follows, slopes of others are exact, and a step leaves its square over the gap.
-NEARLY, NEARLY_ON_CELLS = replace(SEARCH, step=1e-4), replace(SEARCH, step=1e-5, negligible=1e-5)
+NEARLY, NEARLY_ON_CELLS = replace(SEARCH, step=1e-4), replace(SEARCH, step=1e-5, negligible=1e-6)
 NEARLY_CARRIED = LEAST  # share of the load that may be left over on other meshes than cells
 # Differences of coefficients between meshes of cells scatter, and may be so much less than is to be expected. Where all
 # meshes agree by chance, they may still be off by so much of the square of a cell's length over 1 - e, the narrow gap.
