@@ -41,7 +41,7 @@ def rotor_at_rest(
     if oil is None:
         oil = [memoryless(*each) for each in zip(films, places, strict=True)]
     nothing = np.zeros((places.shape[1],) * 2)
-    constant = tuple(replace(film, by_displacement=nothing, by_velocity=nothing) for film in films)
+    constant = tuple(replace(film, by_displacement=nothing, by_velocity=nothing, slopes=None) for film in films)
     _, by_speeds, by_places = ring_torques(system, bodies, places, constant)
     journals, angles = rotor.journals.reshape(-1, rotor.size), np.array(system.spins)
     stiffness, damping = rotor.stiffness.copy(), rotor.damping.copy()

@@ -71,12 +71,15 @@ def search_rest(
     ends: Callable[[Array], Array],
     search: Search,
     lacking: Array | None = None,
+    besides: Callable[[Array], float] | None = None,
 ) -> SearchEnd[Films]:
-    """Where journals rest, sought from `start` (films, c) in m, with tilts in rad where they have any.
+    """Where journals rest, sought from `start` (films, c) in m, with tilts in rad where they have any, or (n,) of any
+    unknowns.
 
     balance: of the journals at a position (films, c), and the balance at the position before, if there is one; ends:
     (k, 2) what has to stay within the gap at a position, over the clearance and linear in it; lacking: what the slopes
-    are known to lack, see SearchEnd. Raises what balance raises.
+    are known to lack, see SearchEnd; besides: size of a step in what moves no journal, over the clearance, too. Raises
+    what balance raises.
     """
     first = balance(start, None)
     best = here = SearchEnd(start, first, False, np.zeros_like(first.slope) if lacking is None else lacking)
@@ -87,7 +90,7 @@ def search_rest(
         if current.left < search.force:
             return replace(here, settled=True)
         slope = current.slope + here.lacking
-        if not (np.isfinite(slope).all() and np.linalg.matrix_rank(slope) == len(slope)):
+        if not np.isfinite(slope).all() or _singular(slope):
             break
         solved = np.asarray(np.linalg.solve(slope, -current.residual), dtype=np.float64)
         step = solved.reshape(*here.position.shape)
@@ -95,7 +98,8 @@ def search_rest(
         if _leaves(there, moved, search.gap):
             break
         share = whole = min([1.0, *(largest_share(*pair) for pair in zip(there, moved, strict=True))])
-        if (size := float(np.abs(moved).max())) < search.negligible:
+        size = max(float(np.abs(moved).max()), besides(step) if besides else 0.0)
+        if size < search.negligible:
             return replace(here, settled=True)
         arrives = size < search.step
         while True:
@@ -113,6 +117,16 @@ def search_rest(
         if here.settled or since > search.patience or stuck == STUCK:
             break
     return best
+
+
+def _singular(slope: Array) -> bool:
+    """Whether a matrix is singular, whatever the units of its rows and columns."""
+    for axis in (1, 0):
+        size = np.abs(slope).max(axis=axis, keepdims=True)
+        if not size.all():
+            return True
+        slope = slope / size
+    return bool(np.linalg.matrix_rank(slope) < len(slope))
 
 
 def _lacking(before: Array, current: ForceBalance[Films], new: ForceBalance[Films], step: Array) -> Array:

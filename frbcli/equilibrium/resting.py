@@ -1,44 +1,38 @@
-"""The static equilibrium of a rotor at a given speed: K q = f_static + sum over films of m P^T F(P q, 0, omega).
+"""The static equilibrium of a machine at a given speed: K q = f_static + sum over films of m P^T F(P q, 0, omega).
 
-The rotor is linear, and the films see its journals only. So it is condensed first to the force that it exerts on its
-films with the journals held at given places; Newton's method then runs on the two coordinates of each journal. Floating
-rings turn with the speeds at which the torques on them balance (ring_speed.py), which follow from the places of the
-journals: they are no unknowns of their own. Films that see tilts have the rotor in all its degrees of freedom, and its
-load does not determine the force of each; there the speeds of the rings are unknowns instead of their angles. """
+Newton's method runs on all degrees of freedom of the rotor. Floating rings have their speeds as unknowns instead of
+their angles, and the torques on them as equations (ring_speed.py).
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.arrays import Array
-from frbcli.equilibrium.newton import ForceBalance, Search, search_rest
-from frbcli.equilibrium.ring_speed import (
-    NUDGE,
-    SUM,
-    balanced_speeds,
-    by_total,
-    drags,
-    pin_angles,
-    ring_speeds,
-    ring_torques,
-)
+from frbcli.equilibrium.newton import ForceBalance, Search, SearchEnd, search_rest
+from frbcli.equilibrium.ring_speed import dragged_speeds, pin_angles, ring_balance
 from frbcli.errors import NotConverged
 from frbcli.film.contact_gap import ELASTIC_LIMIT
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.roughness.contact import ElasticShell
-from frbcli.rotor.assembly import HeldRotor, LinearRotor, held_rotor, whole_rotor
+from frbcli.rotor.assembly import HeldRotor, LinearRotor, held_rotor, sprung
 from frbcli.rotor.port import pushed, settled
 from frbcli.scene.machine.system import System
 
+FilmBalance = ForceBalance[tuple[FilmForce, ...]]
 SEARCH = Search(step=1e-10, force=0.0, share=1e-8, gap=1.0 - LARGEST_ECCENTRICITY)
 STILL = 1e-6  # N: round-off of the films of a rotor without weight
 ARM = 100.0  # clearances: torques on rings over it count next to forces, and not too much before the speeds are near
 OUTER_START = 0.9  # eccentricity of the last start that is tried
+# A position is foreseen from those at a few other speeds, as long as the sum of their weights without sign is below
+# TRUSTED: four at even distances have 15, one step ahead.
+REMEMBERED, TRUSTED = 4, 16.0
 
 
 @dataclass(frozen=True)
@@ -54,6 +48,16 @@ class RestingPosition:
     films: tuple[FilmForce, ...]
     lacking: Array | None = None
 
+    @property
+    def without_films(self) -> RestingPosition:
+        """The position alone, to begin from with other films."""
+        return replace(self, films=(), lacking=None)
+
+    def moved(self, displacements: Array, ring_speeds: Array) -> RestingPosition:
+        """This position moved by (n,) and (rings,), to begin from; journals are not followed."""
+        moved, faster = self.displacements + displacements, self.ring_speeds + ring_speeds
+        return replace(self, displacements=moved, ring_speeds=faster)
+
     def velocities(self, system: System) -> Array:
         """(n,) velocities of all degrees of freedom: the rings turn."""
         speeds = np.zeros_like(self.displacements)
@@ -61,61 +65,92 @@ class RestingPosition:
         return speeds
 
 
+def lagrange(place: float, places: Sequence[float]) -> Array:
+    """(k,) weights of values at k places, whose sum is the value at `place` on the polynomial through them; infinite
+    or NaN where two places are one."""
+    known, own = np.array(places), np.eye(len(places))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        factors = np.where(own, 1.0, place - known) / (known[:, None] - known + own)
+        return np.asarray(np.prod(factors, axis=1))
+
+
+def weights_at(omega: float, omegas: Sequence[float]) -> Array:
+    """(k,) weights of values at the last k of `omegas`, whose sum is the value at omega; of as many as are trusted, at
+    least of the last one."""
+    for count in range(min(len(omegas), REMEMBERED), 1, -1):
+        weights = lagrange(omega, omegas[-count:])
+        if float(np.abs(weights).sum()) < TRUSTED:
+            return weights
+    return np.ones(1)
+
+
+def foreseen(omega: float, omegas: Sequence[float], positions: Sequence[RestingPosition]) -> RestingPosition:
+    """The position at omega rad/s, with the fields of its films, as it follows from positions at other speeds, of which
+    the last one is near."""
+    weights = weights_at(omega, omegas)
+    some = positions[-len(weights) :]
+    displacements = weighted(weights, [each.displacements for each in some])
+    journals = weighted(weights, [each.journals for each in some])
+    speeds = weighted(weights, [each.ring_speeds for each in some])
+    films = tuple(_foreseen(weights, each) for each in zip(*(each.films for each in some), strict=False))
+    return RestingPosition(displacements, journals, speeds, films, some[-1].lacking)
+
+
+def weighted(weights: Array, values: Sequence[Array | float]) -> Array:
+    """The sum of arrays of one shape, each times its weight."""
+    return np.asarray(np.tensordot(weights, np.array(values), axes=1))
+
+
+def _foreseen(weights: Array, films: Sequence[FilmForce]) -> FilmForce:
+    """The last of several films with the weighted sum of all their fields, where it is known how these follow."""
+    last, slopes = films[-1], [film.slopes for film in films if film.slopes]
+    fields = [film.field for film in films if film.field is not None and last.field is not None
+              and film.field.shape == last.field.shape]  # fmt: skip
+    if not len(slopes) == len(fields) == len(films):
+        return last
+    place, total = (weighted(weights, [getattr(each, name) for each in slopes]) for name in ("place", "total"))
+    return replace(last, field=weighted(weights, fields), slopes=replace(slopes[-1], place=place, total=float(total)))
+
+
 def resting_position(
     system: System,
     omega: float,
     start: Array | None = None,
     search: Search = SEARCH,
-    held: HeldRotor | None = None,
     neighbour: RestingPosition | None = None,
 ) -> RestingPosition:
-    """Where the machine rests at omega rad/s, sought from the displacements `start` (n,), if journals are within their
-    gaps there, then from the centre. held: the rotor with its journals held in their planes, if it is at hand;
-    neighbour: a position near the start; its film fields and the corrections of their slopes start the search.
+    """Where the machine rests at omega rad/s, sought from the displacements `start` (n,), by default of the neighbour,
+    if journals are within their gaps there, then from the centre. neighbour: a position near the start; its ring
+    speeds, its film fields and the corrections of their slopes start the search.
 
     Raises NotConverged if no start leads to one.
     """
     if system.rotor.ports:
         return _at_ports(system, omega, start, search, neighbour)
-    held, clearances = held or held_in_plane(system, omega), np.array(system.clearances)[:, None]
-    loads = held.load.reshape(-1, 2)
-    size = np.linalg.norm(loads, axis=1, keepdims=True)
-    along = np.divide(loads, size, out=np.zeros_like(loads), where=size > 0.0)
+    machine = RestEquations(system, omega)
     if not system.names:
-        return _position(system, held, omega, held.shape, ())
-    starts = [np.zeros_like(loads), OUTER_START * clearances * along]
-    if system.asperities is not None:
-        carried = size[:, 0] / system.rotor.multiplicity
-        starts.append(along * [[system.rubbing(i).standing(load)] for i, load in enumerate(carried.tolist())])
-    if system.films.coordinates > 2:
-        starts = [held.shape + held.following @ each.ravel() for each in starts]
-        held = whole_rotor(system.rotor, omega)
-        starts = [_with_rings(system, held, omega, each) for each in starts]
+        return machine.position(machine.held.shape, ())
     films, lacking = ((), None) if neighbour is None else (neighbour.films, neighbour.lacking)
-    balance = partial(_balance, system, held, omega, films)
-    if held.journals is not None:
-        balance = partial(_whole_balance, system, held, held.journals, omega, films)
-    tries = [(each, 1.0) for each in starts]
-    if system.shell is not None:
-        pressed = _on_shells(system, system.shell, _still(system, omega), starts, loads)
-        tries += [(each, ELASTIC_LIMIT) for each in pressed]
-    if start is not None:
-        near = system.rotor.journals @ start if held.journals is None else _with_rings(system, held, omega, start)
-        reach = 1.0 if system.shell is None or _outmost(system, held, 1.0, near) < 1.0 else ELASTIC_LIMIT
-        if _outmost(system, held, reach, near) < LARGEST_ECCENTRICITY:
-            tries.insert(0, (near, reach))
-    left = np.inf
-    for first, reach in (each for each in tries if _outmost(system, held, each[1], each[0]) < 1.0):
-        end = search_rest(balance, first, partial(_ends, system, held, reach), search, lacking)
-        if end.settled and _outmost(system, held, reach, end.position) < LARGEST_ECCENTRICITY:
-            displacements = held.shape + held.following @ end.position.ravel()
-            return replace(_position(system, held, omega, displacements, end.balance.films), lacking=end.lacking)
+
+    def sought(machine: RestEquations, first: Array, reach: float) -> SearchEnd[tuple[FilmForce, ...]]:
+        def balance(unknowns: Array, before: FilmBalance | None) -> FilmBalance:
+            return machine.balance(unknowns, before.films if before else films)
+
+        return search_rest(balance, first, partial(machine.ends, reach=reach), search, lacking, machine.turned)
+
+    left, tried = np.inf, 0
+    for first, reach, sticks in machine.starts(start, neighbour):
+        tried += 1
+        end = sought(machine, sought(replace(machine, sticks=True), first, reach).position if sticks else first, reach)
+        if end.settled and machine.outmost(end.position, reach) < LARGEST_ECCENTRICITY:
+            return replace(machine.position(end.position, end.balance.films), lacking=end.lacking)
         left = min(left, end.balance.left)
-    if not loads.any() and left < STILL:  # films that do not turn hold nothing, and have nothing to hold
-        return _position(system, held, omega, held.shape, ())
+    load = machine.held.load
+    if not load.any() and left < STILL:  # films that do not turn hold nothing, and have nothing to hold
+        return machine.position(machine.with_rings(machine.held.shape), ())
     raise NotConverged(
         f"No static equilibrium at {omega / (2 * np.pi):.4g} Hz below an eccentricity of {LARGEST_ECCENTRICITY}: "
-        f"{len(tries)} starts, residual {left:.3g} N of {np.linalg.norm(loads):.3g} N. {_remedy(system, omega)}"
+        f"{tried} starts, residual {left:.3g} N of {np.linalg.norm(load):.3g} N. {_remedy(machine)}"
     )
 
 
@@ -126,247 +161,156 @@ def _at_ports(
     port over its length: a stop that nothing touches holds nothing."""
 
     def rest(flat: LinearRotor, q: Array) -> tuple[Array, RestingPosition]:
-        position = resting_position(replace(system, rotor=flat), omega, q, search, None, neighbour)
+        position = resting_position(replace(system, rotor=flat), omega, q, search, neighbour)
         return position.displacements, position
 
+    if start is None and neighbour is not None:
+        start = neighbour.displacements
     starts = [] if start is None else [start]
     starts += [np.zeros(system.rotor.size), pushed(system.rotor)]
     return settled(system.rotor, omega, starts, rest, search.step)
 
 
-def _remedy(system: System, omega: float) -> str:
+def _remedy(machine: RestEquations) -> str:
     usual = "Ask for a higher speed, or give the bearing more viscosity, more width or less clearance."
-    if system.shell is None and _still(system, omega).any():
+    if machine.system.shell is None and machine.still.any():
         return f"{usual} A film between surfaces that do not turn carries nothing: a spring or an elastic shell does."
     return usual
 
 
-def held_in_plane(system: System, omega: float) -> HeldRotor:
-    """The rotor at omega rad/s as the journals see it in their planes, whatever the films. Raises NotConverged."""
-    return held_rotor(replace(system.rotor, journals=system.rotor.journals[:, :2]), omega)
+@dataclass(frozen=True)
+class RestEquations:
+    """A machine at omega rad/s. Its unknowns (n,) are its displacements in m and rad, and in place of the angles of its
+    rings their speeds over a unit. sticks: whether its rings are held."""
 
+    system: System
+    omega: float
+    sticks: bool = False
 
-def _position(
-    system: System, held: HeldRotor, omega: float, displacements: Array, films: tuple[FilmForce, ...]
-) -> RestingPosition:
-    speeds: Array | None = None
-    if held.journals is not None:
-        if not films:
-            displacements = _with_rings(system, held, omega, displacements)
-        displacements, speeds = _parted(system, omega, displacements)
-    journals = system.rotor.journals @ displacements + system.films.standing
-    speeds = ring_speeds(system, held, omega, journals, films) if speeds is None else speeds
-    if system.pinned.any():
-        displacements = displacements.copy()
-        displacements[list(system.spins)] = pin_angles(system, omega, journals, films)
-    return RestingPosition(displacements, journals, speeds, films)
+    @cached_property
+    def held(self) -> HeldRotor:
+        """The rotor as the journals see it in their planes, whatever the films. Raises NotConverged."""
+        rotor = self.system.rotor
+        return held_rotor(replace(rotor, journals=rotor.journals[:, :2]), self.omega)
 
+    @cached_property
+    def _sprung(self) -> tuple[Array, Array]:
+        return sprung(self.system.rotor.at(self.omega))
 
-def _ring_unit(system: System, omega: float) -> float:
-    """Speed of a ring in rad/s per unknown of 1 m: the speed of the rotor over a film's clearance."""
-    return max(abs(omega), 1.0) / system.clearances[0]
+    @property
+    def _ring_unit(self) -> float:
+        """Speed of a ring in rad/s per unknown of 1 m: the speed of the rotor over a film's clearance."""
+        return max(abs(self.omega), 1.0) / self.system.length
 
+    @property
+    def still(self) -> NDArray[np.bool_]:
+        """(films,) which films lie between surfaces that do not turn."""
+        system = self.system
+        return np.asarray(system.omegas(self.omega, np.where(system.pinned, 0.0, self.omega)) == 0.0)
 
-def _parted(system: System, omega: float, unknowns: Array) -> tuple[Array, Array]:
-    """(n,) displacements and (rings,) speeds in rad/s out of the unknowns of a whole rotor."""
-    spins, displacements = list(system.spins), unknowns.copy()
-    displacements[spins] = 0.0
-    return displacements, unknowns[spins] * _ring_unit(system, omega)
+    def position(self, unknowns: Array, films: tuple[FilmForce, ...]) -> RestingPosition:
+        """Where the machine rests, with its films there."""
+        system = self.system
+        displacements, speeds = self._parted(unknowns)
+        journals = self.places(displacements)
+        displacements[list(system.spins)] = pin_angles(system, self.omega, journals, films)
+        return RestingPosition(displacements, journals, speeds, films)
 
+    def _parted(self, unknowns: Array) -> tuple[Array, Array]:
+        """(n,) displacements and (rings,) speeds in rad/s."""
+        spins, displacements = list(self.system.spins), unknowns.copy()
+        displacements[spins] = 0.0
+        return displacements, unknowns[spins] * self._ring_unit
 
-def _with_rings(system: System, held: HeldRotor, omega: float, displacements: Array) -> Array:
-    """(n,) unknowns of a whole rotor at displacements (n,), with its rings at the speeds given by the drag of their
-    films."""
-    drag, unknowns = drags(system, _places(system, held, displacements)), displacements.copy()
-    for ring, spin in enumerate(system.spins):
-        outer, inner = (system.bodies == ring).T
-        free = 0.0 if system.pinned[ring] else omega
-        unknowns[spin] = free * drag[inner].sum() / drag[inner | outer].sum() / _ring_unit(system, omega)
-    return unknowns
+    def places(self, unknowns: Array) -> Array:
+        """(films, c) coordinates of the journals in their shells."""
+        return self.system.journals_of(unknowns)
 
+    def ends(self, unknowns: Array, reach: float) -> Array:
+        """See Films.ends, over the reach, 1 or an elastic shell's."""
+        return np.asarray(self.system.films.ends(self.places(unknowns)) / reach)
 
-def _forces(
-    system: System, omega: float, speeds: Array, places: Array, near: tuple[FilmForce, ...]
-) -> tuple[FilmForce, ...]:
-    """The films with journals at rest at places (films, c) and rings at speeds (rings,) in rad/s; near: those near by,
-    from whose fields finite-volume films are sought, if there are any."""
-    omegas, slips = (each.tolist() for each in (system.omegas(omega, speeds), system.slips(omega, speeds)))
-    return tuple(
-        system.force(i, place, np.zeros_like(place), omegas[i], near[i] if near else None, slips[i])
-        for i, place in enumerate(places)
-    )
+    def outmost(self, unknowns: Array, reach: float) -> float:
+        """The largest eccentricity over the reach."""
+        return float(np.linalg.norm(self.ends(unknowns, reach), axis=1).max())
 
+    def turned(self, step: Array) -> float:
+        """By how much a step changes the speed of any ring, over the speed of the rotor."""
+        return float(np.abs(step[list(self.system.spins)]).max(initial=0.0)) / self.system.length
 
-def _balance(
-    system: System, held: HeldRotor, omega: float, near: tuple[FilmForce, ...], position: Array,
-    before: ForceBalance[tuple[FilmForce, ...]] | None,
-) -> ForceBalance[tuple[FilmForce, ...]]:  # fmt: skip
-    """What rotor and films put on the journals; near: films near the first position, see _forces."""
-    surplus = held.load - held.stiffness @ position.ravel()
-    slope = -held.stiffness.copy()
-    near = _foreseen(before.films if before else near, position)
-    speeds = ring_speeds(system, held, omega, position, near)
-    films = _forces(system, omega, speeds, position, near)
-    changed, following = _following(system, held, omega, position, films, speeds)
-    for i, (many, force) in enumerate(zip(system.rotor.multiplicity, films, strict=True)):
-        own = slice(2 * i, 2 * i + 2)
-        surplus[own] += many * force.force
-        slope[own, own] += many * force.by_displacement
+    def starts(self, start: Array | None, neighbour: RestingPosition | None) -> Iterator[tuple[Array, float, bool]]:
+        """Unknowns to begin from, each with its reach, and whether rings stick at first: those near by, the centre, and
+        journals under their load."""
+        system, clearances = self.system, np.array(self.system.clearances)[:, None]
+        if neighbour is not None and start is None:
+            start = neighbour.displacements
+        if start is not None:
+            near = self.with_rings(start, None if neighbour is None else neighbour.ring_speeds)
+            reach = 1.0 if system.shell is None or self.outmost(near, 1.0) < 1.0 else ELASTIC_LIMIT
+            if self.outmost(near, reach) < LARGEST_ECCENTRICITY:
+                yield near, reach, False
+        loads = self.held.load.reshape(-1, 2)
+        size = np.linalg.norm(loads, axis=1, keepdims=True)
+        along = np.divide(loads, size, out=np.zeros_like(loads), where=size > 0.0)
+        journals = [np.zeros_like(loads), OUTER_START * clearances * along]
+        carried = size[:, 0] / system.rotor.multiplicity
+        if system.asperities is not None:
+            journals.append(along * [[system.rubbing(i).standing(load)] for i, load in enumerate(carried.tolist())])
+        tries = [(each, 1.0) for each in journals]
+        if system.shell is not None and self.still.any():
+            deep = along * self._pressed(system.shell, carried)[:, None]
+            tries += [(np.where(self.still[:, None], deep, each), ELASTIC_LIMIT) for each in journals]
+        for sticks in (False, True) if system.rough_rings else (False,):
+            speeds = np.zeros(system.ring_count) if sticks else None
+            for each, reach in tries:
+                unknowns = self.with_rings(self.held.shape + self.held.following @ each.ravel(), speeds)
+                if self.outmost(unknowns, reach) < 1.0:
+                    yield unknowns, reach, sticks
+
+    def _pressed(self, shell: ElasticShell, loads: Array) -> Array:
+        """(films,) m by which films that carry nothing let their journals into their elastic shells, loads (films,) in
+        N."""
+        least = np.maximum(loads, np.finfo(float).tiny)
+        return np.array([shell.pressed(*each) for each in zip(least.tolist(), self.system.clearances, strict=True)])
+
+    def with_rings(self, displacements: Array, speeds: Array | None = None) -> Array:
+        """(n,) unknowns at displacements (n,), the rings with speeds (rings,) in rad/s, by default those given by the
+        drag of their films."""
+        unknowns = displacements.copy()
+        if speeds is None:
+            speeds = dragged_speeds(self.system, self.omega, self.places(displacements))
+        unknowns[list(self.system.spins)] = speeds / self._ring_unit
+        return unknowns
+
+    def balance(self, unknowns: Array, near: tuple[FilmForce, ...]) -> FilmBalance:
+        """What acts on the rotor, and the torques on its rings over an arm. near: films near by, from whose fields
+        finite-volume films are sought, if there are any."""
+        system, rotor, (load, stiffness) = self.system, self.system.rotor, self._sprung
+        displacements, speeds = self._parted(unknowns)
+        places, bodies = self.places(displacements), np.append(self.omega, speeds)
+        films = self._films(speeds, places, near)
+        surplus, slope = load - stiffness @ displacements, -stiffness
+        for many, journal, force in zip(rotor.multiplicity, rotor.journals, films, strict=True):
+            own = many * journal.T
+            surplus = surplus + own @ force.force
+            slope = slope + own @ force.by_displacement @ journal
         if system.ring_count:
-            spun = many * _by_total(force, position[i])
-            surplus[own] += changed[i] * spun
-            slope[own] += np.outer(spun, following[i])
-    if system.rough_rings:
-        slope += _by_rubbed_rings(system, held, omega, position, near, following)
-    return ForceBalance(surplus, slope, films)
+            spins, unit, arm = list(system.spins), self._ring_unit, ARM * system.length
+            rings = ring_balance(system, bodies, places, films)
+            pushes = rotor.multiplicity[:, None, None] * np.swapaxes(rotor.journals, 1, 2)
+            slope[:, spins] += unit * (pushes @ rings.forces_by_speed).sum(axis=0)
+            slope[spins] = rings.torques_by_place @ rotor.journals.reshape(-1, rotor.size) / arm
+            slope[np.ix_(spins, spins)] = rings.torques_by_speed * unit / arm
+            surplus[spins] = rings.torques / arm
+            stopped = np.array(spins)[system.pinned | self.sticks]
+            surplus[stopped], slope[stopped], slope[:, stopped] = -unknowns[stopped], 0.0, 0.0
+            slope[stopped, stopped] = -1.0
+        return ForceBalance(surplus, slope, films)
 
-
-def _by_rubbed_rings(
-    system: System, held: HeldRotor, omega: float, position: Array, near: tuple[FilmForce, ...], following: Array
-) -> Array:
-    """(2 films, 2 films) what the speeds of rings that follow the places of the journals change of the forces of the
-    summits, less that as of a film. following: see _following."""
-    by_rings, many, still = np.zeros((position.size,) * 2), np.repeat(system.rotor.multiplicity, 2), np.zeros(2)
-
-    def summits(speeds: Array) -> list[FilmForce]:
-        totals, slips = system.omegas(omega, speeds), system.slips(omega, speeds)
-        return [
-            system.rubbing(i).force(place, still, slip, 0.5 * (total - slip))
-            for i, (place, total, slip) in enumerate(zip(position, totals.tolist(), slips.tolist(), strict=True))
-        ]
-
-    for i, own in enumerate(summits(ring_speeds(system, held, omega, position, near))):
-        by_rings[2 * i : 2 * i + 2] -= np.outer(by_total(own, position[i]), following[i])
-    for column in range(position.size):
-        step = np.zeros(position.size)
-        step[column] = NUDGE * system.clearances[column // 2]
-        ahead, behind = (
-            np.concatenate([own.force for own in summits(ring_speeds(system, held, omega, position + moved, near))])
-            for moved in (step.reshape(-1, 2), -step.reshape(-1, 2))
+    def _films(self, speeds: Array, places: Array, near: tuple[FilmForce, ...]) -> tuple[FilmForce, ...]:
+        """The films with journals at rest at places (films, c) and rings at speeds (rings,) in rad/s."""
+        totals, slips = (of(self.omega, speeds).tolist() for of in (self.system.omegas, self.system.slips))
+        return tuple(
+            self.system.force(i, place, np.zeros_like(place), totals[i], near[i] if near else None, slips[i])
+            for i, place in enumerate(places)
         )
-        by_rings[:, column] += (ahead - behind) / (2.0 * step[column])
-    return many[:, None] * by_rings
-
-
-def _whole_balance(
-    system: System, held: HeldRotor, journals: Array, omega: float, near: tuple[FilmForce, ...], unknowns: Array,
-    before: ForceBalance[tuple[FilmForce, ...]] | None,
-) -> ForceBalance[tuple[FilmForce, ...]]:  # fmt: skip
-    """What acts on a whole rotor, and the torques on its rings over an arm; near: see _balance."""
-    spins, unit = list(system.spins), _ring_unit(system, omega)
-    displacements, speeds = _parted(system, omega, unknowns)
-    places = _places(system, held, displacements)
-    films = _forces(system, omega, speeds, places, before.films if before else near)
-    surplus, slope = held.load - held.stiffness @ displacements, -held.stiffness.copy()
-    for i, (many, force) in enumerate(zip(system.rotor.multiplicity, films, strict=True)):
-        own = many * system.rotor.journals[i].T
-        surplus += own @ force.force
-        slope += own @ force.by_displacement @ system.rotor.journals[i]
-        slope[:, spins] += unit * np.outer(own @ _by_total(force, places[i]), system.turning[i, SUM, 1:])
-    if spins:
-        torques, by_speeds, by_places = ring_torques(system, np.append(omega, speeds), places, films)
-        arm = ARM * system.clearances[0]
-        slope[spins], surplus[spins] = by_places @ journals / arm, torques / arm
-        slope[np.ix_(spins, spins)] = by_speeds * unit / arm
-        stopped = np.array(spins)[system.pinned]
-        surplus[stopped], slope[stopped] = -unknowns[stopped], 0.0
-        slope[stopped, stopped] = -1.0
-    return ForceBalance(surplus, slope, films)
-
-
-def _places(system: System, held: HeldRotor, position: Array) -> Array:
-    """(films, c) coordinates of the journals in their shells; position: the unknowns of the rotor."""
-    coordinates = held.places(position, len(system.names))
-    return coordinates if held.journals is None else coordinates + system.films.standing
-
-
-def _ends(system: System, held: HeldRotor, reach: float, position: Array) -> Array:
-    """See Films.ends, over the reach, 1 or an elastic shell's; position: the unknowns of the rotor."""
-    return np.asarray(system.films.ends(_places(system, held, position)) / reach)
-
-
-def _outmost(system: System, held: HeldRotor, reach: float, position: Array) -> float:
-    """The largest eccentricity over the reach; position: the unknowns of the rotor."""
-    return float(np.linalg.norm(_ends(system, held, reach, position), axis=1).max())
-
-
-def _still(system: System, omega: float) -> NDArray[np.bool_]:
-    """(films,) which films lie between surfaces that do not turn."""
-    return np.asarray(system.omegas(omega, np.where(system.pinned, 0.0, omega)) == 0.0)
-
-
-def _on_shells(
-    system: System, shell: ElasticShell, still: NDArray[np.bool_], starts: list[Array], loads: Array
-) -> list[Array]:
-    """The starts with the journals of films that do not turn, and so carry nothing, pressed into their elastic shells;
-    loads: (films, 2) N that the rotor puts on its films. None where all films turn."""
-    starts_ = []
-    for start in starts if still.any() else ():
-        pressed = start.copy()
-        for i in np.flatnonzero(still):
-            carried = loads[i] / system.rotor.multiplicity[i]
-            size = max(float(np.hypot(*carried)), np.finfo(float).tiny)
-            pressed[i] = shell.pressed(size, system.clearances[i]) * carried / size
-        starts_.append(pressed)
-    return starts_
-
-
-def _foreseen(films: tuple[FilmForce, ...], position: Array) -> tuple[FilmForce, ...]:
-    """The films as they are to first order with their journals at other places (films, c)."""
-    return tuple(film.foreseen(place) for film, place in zip(films, position, strict=False))
-
-
-def _by_total(force: FilmForce, place: Array) -> Array:
-    """(c,) derivative of a film's force by omega_J + omega_S, its oil following where it is known how."""
-    return by_total(force, place) if force.slopes is None else force.slopes.force
-
-
-def _following(
-    system: System, held: HeldRotor, omega: float, position: Array, films: tuple[FilmForce, ...], speeds: Array
-) -> tuple[Array, Array]:
-    """How far the speeds of the films are from those at which the torques on the rings balance, (films,) in rad/s, the
-    rings turning with speeds (rings,) while the films were solved, and the derivatives of these by the places of the
-    journals (films, c films) in rad/s over m.
-
-    Less oil in a film lets its ring turn otherwise, whose speed changes the oil: both to first order, as the films
-    foresee their oil."""
-    count, rings = len(position), system.ring_count
-    if not rings:
-        return np.zeros(count), np.zeros((count, position.size))
-    at, drag = partial(balanced_speeds, system, held, omega), drags(system, position, films)
-    steps = (NUDGE * np.repeat(system.clearances, 2))[:, None]
-    moved, pulled = (steps * np.eye(position.size)).reshape(-1, count, 2), NUDGE * np.diag(drag)
-    by_place = (at(position + moved, drag) - at(position - moved, drag)).T / (2.0 * steps.T)
-    by_drag = (at(position, drag + pulled) - at(position, drag - pulled)).T / (2.0 * NUDGE * drag)
-    along, by_total = _drag_slopes(system, omega, position, films)
-    by_place += (by_drag[:, :, None] * along).reshape(rings, -1)
-    off = at(position, drag) - speeds
-    by_rings = system.turning[:, SUM, 1:]
-    by_speeds = (by_drag * by_total) @ by_rings
-    solution = np.linalg.solve(np.eye(rings) - by_speeds, np.column_stack([off, by_place]))
-    return by_rings @ solution[:, 0], by_rings @ solution[:, 1:]
-
-
-def _drag_slopes(
-    system: System, omega: float, position: Array, films: tuple[FilmForce, ...]
-) -> tuple[Array, Array]:
-    """Derivatives of the drags (films,) by the coordinates of each film's journal (films, 2), and by its omega_J +
-    omega_S (films,), as the films foresee their oil."""
-
-    def moved(step: Array, faster: float) -> Array:
-        oil = films if not follows else tuple(
-            film if film.slopes is None else film.foreseen(place, film.slopes.total + faster)
-            for film, place in zip(films, position + step, strict=True)
-        )  # fmt: skip
-        return drags(system, position + step, oil)
-
-    follows = any(system.remembering)
-
-    by_place, clearances = np.zeros_like(position), np.array(system.clearances)
-    for column, unit in enumerate(np.eye(2)):
-        step = NUDGE * np.outer(clearances, unit)
-        by_place[:, column] = (moved(step, 0.0) - moved(-step, 0.0)) / (2.0 * NUDGE * clearances)
-    if not follows:
-        return by_place, np.zeros(len(films))
-    still, faster = np.zeros_like(position), NUDGE * max(abs(omega), 1.0)
-    return by_place, (moved(still, faster) - moved(still, -faster)) / (2.0 * faster)

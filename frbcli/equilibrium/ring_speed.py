@@ -20,12 +20,10 @@ from frbcli.case.schema import Case
 from frbcli.elements.pin import pin_angle
 from frbcli.film.rectangles.film import FilmForce, none_of
 from frbcli.film.roughness.contact import BY_SLIP, BY_V_X, BY_X, F_X, F_Y, ON_JOURNAL, VALUE
-from frbcli.rotor.assembly import HeldRotor
 from frbcli.scene.films import turning_rings
 from frbcli.scene.machine.system import System, film_drag
 
 NUDGE = 1e-6  # of the clearance: of the differences by which the drag follows a journal
-CLOSE, ROUND_OFF = 1e-13, 1e-14  # of the rotor's speed and of a ring's, to which the speed of a ring is found
 SUM, SLIP = range(2)  # of the speeds of journal and shell in System.turning
 
 
@@ -52,64 +50,12 @@ def drags(system: System, places: Array, films: Sequence[FilmForce] = ()) -> Arr
     return np.asarray(sheared * 2.0 * np.pi / system.films.harmonic_gaps(places))
 
 
-def ring_speeds(
-    system: System, held: HeldRotor, omega: float, position: Array, films: Sequence[FilmForce] = ()
-) -> Array:
-    """(rings,) speeds in rad/s at which the torques on the rings balance, their journals in `position` (films, 2) in m,
-    where the rotor's load determines the forces of the films; 0 of rings with a pin, which takes what is left over.
-    films: see drags."""
-    if not system.ring_count:
-        return np.zeros(0)
-    return balanced_speeds(system, held, omega, position, drags(system, position, films))
-
-
-def balanced_speeds(system: System, held: HeldRotor, omega: float, position: Array, drag: Array) -> Array:
-    """(..., rings) ring_speeds with the journals in `position` (..., films, 2) and the drags (..., films) of films."""
-    drag = np.broadcast_to(drag, np.broadcast_shapes(drag.shape, position.shape[:-1]))
-    position = np.broadcast_to(position, (*drag.shape, 2))
-    outer, inner = (system.bodies[:, side, None] == np.arange(system.ring_count) for side in (0, 1))
-    carried = (held.load - position.reshape(*drag.shape[:-1], -1) @ held.stiffness.T).reshape(position.shape)
-    moment = 0.5 * (position[..., 0] * carried[..., 1] - position[..., 1] * carried[..., 0])
-    moment = moment / system.rotor.multiplicity
-    touched = outer | inner  # of a cartridge at both ends
-    driving = omega * drag @ inner + (moment @ touched if system.torque == "all" else 0.0)
-    held_by = drag @ touched
-    speeds = np.where(system.pinned, 0.0, driving / held_by)
-    for at in np.ndindex(speeds.shape[:-1]) if system.rough_rings else ():
-        for ring in np.flatnonzero(~system.pinned):
-            speeds[at][ring] = _rubbed(system, int(ring), omega, position[at], speeds[at], float(held_by[at][ring]))
-    return speeds
-
-
-def _rubbed(system: System, ring: int, omega: float, position: Array, speeds: Array, drag: float) -> float:
-    """The speed of a ring that its films alone would turn with speeds[ring], under films and summits together. drag:
-    decrease of the film torque per speed, N m s. The friction torque falls with the speed, too, so that there is one
-    root only."""
-    from scipy.optimize import brentq  # takes long to load
-
-    free = float(speeds[ring])
-
-    def surplus(speed: float) -> float:
-        """In rad/s."""
-        bodies = speeds.copy()
-        bodies[ring] = speed
-        return summit_torque(system, ring, omega, position, bodies) / drag - (speed - free)
-
-    end = free + 2.0 * surplus(free)
-    close = CLOSE * (abs(omega) or abs(end - free))  # the rotor may stand still
-    return free if end == free else float(brentq(surplus, *sorted((free, end)), xtol=close, rtol=ROUND_OFF))
-
-
-def summit_torque(system: System, ring: int, omega: float, places: Array, speeds: Array) -> float:
-    """Torque in N m on a ring by the friction of rough surfaces, at speeds (rings,) in rad/s. What the rotor puts on a
-    film is carried by the summits in part, whose force has no share in the moment of the film."""
-    torque, totals, slips = 0.0, system.omegas(omega, speeds), system.slips(omega, speeds)
-    for i in np.flatnonzero((system.bodies == ring).any(axis=1)):
-        shell = 0.5 * float(totals[i] - slips[i])
-        on_journal, on_shell, moment = system.rubbing(int(i)).pulled(places[i], float(slips[i]), shell)
-        torque += on_journal if system.bodies[i, 0] == ring else on_shell
-        torque += 0.5 * moment if system.torque == "all" else 0.0
-    return torque
+def dragged_speeds(system: System, omega: float, places: Array) -> Array:
+    """(rings,) speeds in rad/s at which Couette's torques on the rings balance, with full films and journals at places
+    (films, coordinates); 0 of rings with a pin, which takes what is left over."""
+    drag, rings = drags(system, places), np.arange(system.ring_count)
+    outer, inner = (system.bodies[:, side, None] == rings for side in (0, 1))
+    return np.asarray(np.where(system.pinned, 0.0, omega) * (drag @ inner) / (drag @ (inner | outer)))
 
 
 def across(place: Array) -> Array:
@@ -124,37 +70,82 @@ def by_total(force: FilmForce, place: Array) -> Array:
     return np.asarray(0.5 * force.by_velocity @ across(place))
 
 
-def _drag_slopes(system: System, places: Array, films: Sequence[FilmForce]) -> Array:
-    """(films, c) derivatives of the drags by the coordinates of the journals, the oil remaining as it is."""
+def following(force: FilmForce, place: Array) -> Array:
+    """(c,) derivative of a film's force by omega_J + omega_S, its oil following where it is known how."""
+    return by_total(force, place) if force.slopes is None else force.slopes.force
+
+
+def _drag_slopes(system: System, places: Array, films: Sequence[FilmForce]) -> tuple[Array, Array]:
+    """Derivatives of the drags by the coordinates of the journals (films, c), and by omega_J + omega_S of each film
+    (films,), the oil following where it is known how."""
+
+    follows = any(system.remembering)  # other films are full
+
+    def change(step: Array, faster: float = 0.0) -> Array:
+        return moved(step, faster) - moved(-step, -faster)
+
+    def moved(step: Array, faster: float) -> Array:
+        oil = films if not follows else [
+            film if film.slopes is None else film.foreseen(place, film.slopes.total + faster)
+            for film, place in zip(films, places + step, strict=True)
+        ]  # fmt: skip
+        return drags(system, places + step, oil)
+
     slopes = np.zeros_like(places)
     for k, unit in enumerate(np.eye(places.shape[1])):
         ahead = np.tile(unit, (len(places), 1))
         reach = np.abs(system.films.ends(ahead)).reshape(len(places), -1).max(axis=1)
         step = NUDGE / reach[:, None] * ahead
-        slopes[:, k] = (drags(system, places + step, films) - drags(system, places - step, films)) / (2.0 * step[:, k])
-    return slopes
+        slopes[:, k] = change(step) / (2.0 * step[:, k])
+    if not follows:
+        return slopes, np.zeros(len(films))
+    faster = NUDGE * max([1.0, *(abs(film.slopes.total) for film in films if film.slopes)])
+    return slopes, change(np.zeros_like(places), faster) / (2.0 * faster)
 
 
 def ring_torques(
     system: System, bodies: Array, places: Array, films: tuple[FilmForce, ...]
 ) -> tuple[Array, Array, Array]:
     """(rings,) torques on the rings in N m, with films at places (films, c), and their derivatives by the speeds of the
-    rings (rings, rings) and by the places (rings, c films). bodies: (1 + rings,) speeds of the rotor and the rings in
-    rad/s."""
+    rings (rings, rings) and by the places (rings, c films), the oil following where it is known how. bodies:
+    (1 + rings,) speeds of the rotor and the rings in rad/s."""
     rings = np.arange(system.ring_count)
     around, inside = (system.bodies[:, side, None] == rings for side in (1, 0))
     pulled, touched = around.astype(float) - inside, (around | inside).astype(float)
-    drag, slips = drags(system, places, films), system.turning[:, SLIP]
+    drag, slips, turned = drags(system, places, films), system.turning[:, SLIP], system.turning[:, SUM, 1:]
     torque = pulled.T @ (drag * (slips @ bodies))
-    by_speeds = (pulled.T * drag) @ slips[:, 1:]
-    slopes, c = _drag_slopes(system, places, films) * (slips @ bodies)[:, None], places.shape[1]
+    by_place, by_turning = _drag_slopes(system, places, films)
+    by_speeds = (pulled.T * drag) @ slips[:, 1:] + (pulled.T * (by_turning * (slips @ bodies))) @ turned
+    slopes, c = by_place * (slips @ bodies)[:, None], places.shape[1]
     by_places = np.asarray(np.repeat(pulled.T, c, axis=1) * slopes.ravel())
     for i, (place, film) in enumerate(zip(places, films, strict=True) if system.torque == "all" else ()):
-        turned, pull = across(place), across(film.force)
+        turning, pull = across(place), across(film.force)
         torque -= 0.5 * touched[i] * (place @ pull)
-        by_places[:, c * i : c * (i + 1)] -= 0.5 * np.outer(touched[i], pull - film.by_displacement.T @ turned)
-        by_speeds += 0.5 * np.outer(touched[i], (turned @ by_total(film, place)) * system.turning[i, SUM, 1:])
+        by_places[:, c * i : c * (i + 1)] -= 0.5 * np.outer(touched[i], pull - film.by_displacement.T @ turning)
+        by_speeds += 0.5 * np.outer(touched[i], (turning @ following(film, place)) * turned[i])
     return torque, by_speeds, by_places
+
+
+@dataclass(frozen=True)
+class RingBalance:
+    """What acts on the rings of a machine at rest. torques: (rings,) N m; torques_by_speed (rings, rings) and
+    torques_by_place (rings, c films): their derivatives by the speeds of the rings and the places of the journals;
+    forces_by_speed: (films, c, rings) of the forces of the films."""
+
+    torques: Array
+    torques_by_speed: Array
+    torques_by_place: Array
+    forces_by_speed: Array
+
+
+def ring_balance(system: System, bodies: Array, places: Array, films: tuple[FilmForce, ...]) -> RingBalance:
+    """Of films with their summits; bodies, places: see ring_torques."""
+    rubbed = rubbed_rings(system, bodies, places)
+    alone = tuple(film.plus(summits, -1.0) for film, summits in zip(films, rubbed.summits, strict=True))
+    torques, by_speed, by_place = ring_torques(system, bodies, places, alone)
+    along = np.array([following(film, place) for film, place in zip(alone, places, strict=True)])
+    forces = along[:, :, None] * system.turning[:, None, SUM, 1:] + rubbed.forces_by_speed
+    return RingBalance(torques + rubbed.pulls, by_speed + rubbed.torques_by_speed, by_place + rubbed.torques, forces)
 
 
 def pin_angles(system: System, omega: float, places: Array, films: tuple[FilmForce, ...]) -> Array:
@@ -163,10 +154,9 @@ def pin_angles(system: System, omega: float, places: Array, films: tuple[FilmFor
     angles = np.zeros(system.ring_count)
     if system.pinned.any():
         bodies = np.append(omega, np.zeros(system.ring_count))
-        torques, _, _ = ring_torques(system, bodies, places, films or (none_of(places.shape[1]),) * len(places))
+        torques = ring_balance(system, bodies, places, films or (none_of(places.shape[1]),) * len(places)).torques
         for ring in np.flatnonzero(system.pinned):
-            rubbed = summit_torque(system, int(ring), omega, places, bodies[1:]) if system.rough_rings else 0.0
-            angles[ring] = pin_angle(system.pins[ring], float(torques[ring]) + rubbed)
+            angles[ring] = pin_angle(system.pins[ring], float(torques[ring]))
     return angles
 
 
@@ -195,11 +185,13 @@ def turned_by(system: System, bodies: Array, places: Array) -> Array:
 
 @dataclass(frozen=True)
 class RubbedRings:
-    """How the summits between rough surfaces follow a machine about its rest. summits: their forces; torques,
-    torques_by_rate: (rings, c films) on the rings, derivatives by the places of the journals and by their velocities;
-    torques_by_speed: (rings, rings) by the speeds of the rings; forces_by_speed: (films, c, rings) of the forces."""
+    """How the summits between rough surfaces follow a machine about its rest. summits: their forces; pulls: (rings,)
+    their torques on the rings, N m; torques, torques_by_rate: (rings, c films) derivatives of these by the places of
+    the journals and by their velocities; torques_by_speed: (rings, rings) by the speeds of the rings; forces_by_speed:
+    (films, c, rings) of the forces."""
 
     summits: tuple[FilmForce, ...]
+    pulls: Array
     torques: Array
     torques_by_rate: Array
     torques_by_speed: Array
@@ -210,7 +202,7 @@ def rubbed_rings(system: System, bodies: Array, places: Array) -> RubbedRings:
     """Of a machine at rest at places (films, c); bodies: see ring_torques."""
     rings, (count, c) = system.ring_count, places.shape
     torques, by_rate, by_speed = np.zeros((rings, count * c)), np.zeros((rings, count * c)), np.zeros((rings, rings))
-    forces, alone = np.zeros((count, c, rings)), []
+    forces, pulls, alone = np.zeros((count, c, rings)), np.zeros(rings), []
     for i, place in enumerate(places):
         total, slip = system.turning[i, SUM], system.turning[i, SLIP]
         shares = np.array([slip, 0.5 * (total - slip)])  # of rotor and rings in slip and speed of the shell
@@ -226,7 +218,8 @@ def rubbed_rings(system: System, bodies: Array, places: Array) -> RubbedRings:
         for side, ring in enumerate(system.bodies[i].tolist()):
             if ring >= 0:
                 torque = by_motion[ON_JOURNAL + side]
+                pulls[ring] += torque[VALUE]
                 torques[ring, own] += torque[BY_X:BY_V_X]
                 by_rate[ring, own] += torque[BY_V_X:BY_SLIP]
                 by_speed[ring] += torque[BY_SLIP:] @ shares[:, 1:]
-    return RubbedRings(tuple(alone), torques, by_rate, by_speed, forces)
+    return RubbedRings(tuple(alone), pulls, torques, by_rate, by_speed, forces)

@@ -9,7 +9,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from frbcli.arrays import Array, Complex
+from frbcli.arrays import Complex
 from frbcli.case.schema import Case
 from frbcli.equilibrium.coefficients import (
     LEAST,
@@ -23,11 +23,10 @@ from frbcli.equilibrium.coefficients import (
 from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator, constant_film, dynamic_film, followed, modes
 from frbcli.equilibrium.linearised import oscillator
 from frbcli.equilibrium.newton import Search
-from frbcli.equilibrium.resting import SEARCH, held_in_plane, resting_position
+from frbcli.equilibrium.resting import REMEMBERED, SEARCH, RestingPosition, foreseen, resting_position
 from frbcli.equilibrium.static_films import MeshFilms, StaticFilms, static_films
 from frbcli.equilibrium.warm_machine import WarmMachine, WarmMachines
 from frbcli.errors import NotConverged
-from frbcli.rotor.assembly import HeldRotor
 from frbcli.scene.gate.rule import STILL
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
@@ -41,7 +40,6 @@ NEARLY_CARRIED = LEAST  # share of the load that may be left over on other meshe
 # Differences of coefficients between meshes of cells scatter, and may be so much less than is to be expected. Where all
 # meshes agree by chance, they may still be off by so much of the square of a cell's length over 1 - e, the narrow gap.
 SCATTER, NARROW = 1.25, 0.15
-CLOSE = 1e-6  # of the speed: closer machines do not show how their places change
 
 
 @dataclass(frozen=True)
@@ -50,8 +48,8 @@ class MachineAtRest:
     its position and the films as they are solved; warm: the heat of the machine, None without; others: the same on
     other meshes, each with the share of the difference that is the error, see MeshFilms; none without errors; dynamic:
     the films with the memory of their oil, of machines that were asked for with it and have such films, whose
-    coefficients in `films` are then one-sided ones without error; by_omega: (n,) how its displacements change with the
-    speed in m s, as from a machine near it, 0 without one."""
+    coefficients in `films` are then one-sided ones without error; before: machines at the speeds before it, the last
+    one the nearest, themselves without any."""
 
     static: StaticFilms
     omega: float
@@ -60,7 +58,7 @@ class MachineAtRest:
     warm: WarmMachine | None = None
     others: tuple[tuple[FilmsAtRest, float], ...] = ()
     dynamic: tuple[DynamicFilm, ...] = ()
-    by_omega: Array | float = 0.0
+    before: tuple[MachineAtRest, ...] = ()
 
     @property
     def system(self) -> System:
@@ -82,9 +80,10 @@ class MachineAtRest:
         """Modes of the finer of two meshes, instead of the extrapolation from both."""
         return followed(self.oscillator, [film.fine for film in self.dynamic], self.modes)
 
-    def foreseen(self, omega: float) -> Array:
-        """(n,) displacements at another speed in rad/s, on a straight line."""
-        return self.at_rest.position.displacements + self.by_omega * (omega - self.omega)
+    @property
+    def path(self) -> tuple[MachineAtRest, ...]:
+        """The machines from which one at another speed is foreseen, the last one this."""
+        return (*self.before, replace(self, before=()))[-REMEMBERED:]
 
 
 class StaticMachines:
@@ -133,52 +132,77 @@ class StaticMachines:
         """The machine at omega rad/s, sought from one near it; with_error: whether errors of the coefficients are
         wanted, else they are NaN. Raises NotConverged."""
         self._check_axis(omega)
+        path = near.path if near else ()
         warm, static = None, self._static
-        start = None if near is None else near.foreseen(omega)
         if self._heat is not None:
-            warm = self._heat.at(omega, None if near is None else near.warm)
+            warm = self._heat.at(omega, [machine.warm for machine in path if machine.warm])
             viscosities, clearances = (
                 np.array([getattr(film, name) for film in warm.films]) for name in ("viscosity", "clearance")
             )
-            static, start = static.warm(viscosities, clearances), warm.resting.displacements
-        settled, with_error = not self._memory, with_error and not self._memory
-        held = held_in_plane(static.system, omega)
-        remembers = static.system.remembers
-        others: list[tuple[FilmsAtRest, float]] | None = None
+            static = static.warm(viscosities, clearances)
+        with_error = with_error and not self._memory
         # what fronts of oil leave differs from speed to speed: only what the memory of the oil needs follows them
-        follows = near is not None and not (remembers and (with_error or self._heat))
-        neighbour = near.at_rest.position if near is not None and follows and static.on_cells else None
-        if not follows and static.on_cells:  # a coarse mesh also brings the journals near to where they rest
-            coarse = static.others if with_error else static.others[:1]
-            start, others = _on_others(coarse, omega, start, NEARLY_ON_CELLS, held, settled)
-        position = resting_position(static.system, omega, start, self._search, held, neighbour)
+        follows = not (static.system.remembers and (with_error or warm))
+        start = None if warm is None else warm.resting.without_films
+        if path and warm is None:
+            start = _foreseen(omega, [(each.omega, each.at_rest) for each in path]).without_films
+        path, settled = path if follows else (), not self._memory
+        meshes, others = static.others if with_error else (), list[tuple[FilmsAtRest, float]]()
+        scouts = static.on_cells and not path  # coarse meshes bring the journals near to where they rest
+        if scouts:
+            start, others = _on_others(meshes or static.others[:1], omega, (), start, NEARLY_ON_CELLS, settled)
+        if path:
+            start = _foreseen(omega, [(each.omega, each.at_rest) for each in path])
+        position = resting_position(static.system, omega, None, self._search, start)
         at_rest = films_at_rest(static.system, omega, position, settled)
-        if with_error and others is None:
-            search = NEARLY_ON_CELLS if static.on_cells else _nearly(static.system, held)
-            _, others = _on_others(static.others, omega, position.displacements, search, held, settled, near)
-        counted = others if with_error and others else []
+        if not scouts:
+            search = NEARLY_ON_CELLS if static.on_cells else _nearly(static.system, at_rest)
+            _, others = _on_others(meshes, omega, path, position.without_films, search, settled)
+        counted = others if with_error else []
         films = tuple(_resting_film(static, omega, i, at_rest, counted) for i in range(len(at_rest.forces)))
         dynamic = _dynamic(static.system, omega, at_rest) if self._memory else ()
-        changes = _by_omega(near, omega, position.displacements)
-        return MachineAtRest(static, omega, films, at_rest, warm, tuple(counted), dynamic, changes)
+        before = () if near is None else near.path
+        return MachineAtRest(static, omega, films, at_rest, warm, tuple(counted), dynamic, before)
 
 
-def _nearly(system: System, held: HeldRotor) -> Search:
+def _foreseen(omega: float, known: Sequence[tuple[float, FilmsAtRest]]) -> RestingPosition:
+    """The position on one mesh at omega rad/s as those at other speeds foresee it."""
+    return foreseen(omega, [each for each, _ in known], [films.position for _, films in known])
+
+
+def _nearly(system: System, at_rest: FilmsAtRest) -> Search:
     """How closely rest is sought on another mesh than cells. LEAST of the load moves a journal by less than LEAST of
     its clearance, the least error that is stated of its place: solving the films once more would add nothing. Moments
     on films that see tilts have another scale."""
     if system.films.coordinates > 2:
         return NEARLY
-    return replace(NEARLY, force=NEARLY_CARRIED * float(np.linalg.norm(held.load)))
+    carried = [many * film.force for many, film in zip(system.rotor.multiplicity, at_rest.forces, strict=True)]
+    return replace(NEARLY, force=NEARLY_CARRIED * float(np.linalg.norm(carried)))
 
 
-def _by_omega(near: MachineAtRest | None, omega: float, displacements: Array) -> Array | float:
-    """Derivative by speed, see MachineAtRest; reuses the neighbour's if the speeds nearly coincide."""
-    if near is None:
-        return 0.0
-    if abs(omega - near.omega) < CLOSE * omega:
-        return near.by_omega
-    return (displacements - near.at_rest.position.displacements) / (omega - near.omega)
+def _on_others(
+    meshes: tuple[MeshFilms, ...], omega: float, path: Sequence[MachineAtRest], start: RestingPosition | None,
+    search: Search, settled: bool = True,
+) -> tuple[RestingPosition | None, list[tuple[FilmsAtRest, float]]]:  # fmt: skip
+    """The machine on several meshes, sought from `start`, at a distance as the machines of the path have it on each, or
+    else from where it rests on the mesh before; the last position, without films; meshes on which no position is found
+    are left out."""
+    others, path = [], [machine for machine in path if len(machine.others) == len(meshes)]
+    for number, mesh in enumerate(meshes):
+        near = start
+        if start is not None and path:
+            own, its = (
+                _foreseen(omega, [(each.omega, films) for each, films in zip(path, known, strict=True)])
+                for known in ([each.at_rest for each in path], [each.others[number][0] for each in path])
+            )
+            near = its.moved(start.displacements - own.displacements, start.ring_speeds - own.ring_speeds)
+        try:
+            position = resting_position(mesh.system, omega, None, search, near)
+            others.append((films_at_rest(mesh.system, omega, position, settled), mesh.share))
+            start = start if path else position.without_films
+        except NotConverged:
+            continue
+    return start, others
 
 
 def _resting_film(
@@ -212,25 +236,3 @@ def _dynamic(system: System, omega: float, at_rest: FilmsAtRest) -> tuple[Dynami
         return own.on(summits)
 
     return tuple(film(i, keeps) for i, keeps in enumerate(system.remembering))
-
-
-def _on_others(
-    meshes: tuple[MeshFilms, ...], omega: float, start: Array | None, search: Search, held: HeldRotor,
-    settled: bool = True, near: MachineAtRest | None = None,
-) -> tuple[Array | None, list[tuple[FilmsAtRest, float]]]:  # fmt: skip
-    """The displacements on the last of several meshes, each sought from those on the one before, or where the machine
-    `near` has the same meshes, from `start` as far off and with the films as there; and the films of all; meshes on
-    which no position is found are left out."""
-    others, same = [], near is not None and len(near.others) == len(meshes)
-    for number, mesh in enumerate(meshes):
-        neighbour, begun = None, start
-        if near is not None and same and start is not None:
-            neighbour = near.others[number][0].position
-            begun = start + neighbour.displacements - near.at_rest.position.displacements
-        try:
-            position = resting_position(mesh.system, omega, begun, search, held, neighbour)
-            others.append((films_at_rest(mesh.system, omega, position, settled), mesh.share))
-            start = start if same else position.displacements
-        except NotConverged:
-            continue
-    return start, others

@@ -10,7 +10,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
-from frbcli.equilibrium.resting import SEARCH, RestingPosition, resting_position
+from frbcli.equilibrium.resting import SEARCH, RestingPosition, foreseen, resting_position, weighted, weights_at
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import HEAT
 from frbcli.scene.machine.heat import Heat, heat_of, warm_system
@@ -20,7 +20,6 @@ from frbcli.scene.planning.planned import Plan
 from frbcli.thermal.model import FilmHeat, SteadyHeat, steady_heat
 
 CLOSE_ON_CELLS = replace(SEARCH, negligible=1e-8)  # temperatures settle to 1e-6 K, 1e-8 of a viscosity
-APART = 1e-4  # of the speed: closer machines do not show how their temperatures change
 
 
 @dataclass(frozen=True)
@@ -49,15 +48,13 @@ class RingTemperature:
 @dataclass(frozen=True)
 class WarmMachine:
     """A machine whose heat balances. system: at its viscosities and clearances; resting: where it rests;
-    steady: what the balance says; films, rings: the same by name; by_omega: (n,) K s how temperatures change with the
-    speed, as from a machine near it, 0 without one."""
+    steady: what the balance says; films, rings: the same by name."""
 
     system: System
     resting: RestingPosition
     steady: SteadyHeat
     films: tuple[FilmTemperature, ...]
     rings: tuple[RingTemperature, ...]
-    by_omega: Array
 
     @property
     def omega(self) -> float:
@@ -118,39 +115,34 @@ class WarmMachines:
         self._heat: Heat = heat_of(case)
         self._concentric = case.heat is not None and case.heat.side_flow == "concentric"
 
-    def at(self, omega: float, near: WarmMachine | None = None) -> WarmMachine:
-        """The machine at omega rad/s, sought from the state of a machine `near`. Raises NotConverged."""
+    def at(self, omega: float, path: Sequence[WarmMachine] = ()) -> WarmMachine:
+        """The machine at omega rad/s, as those at other speeds, of which the last one is near, foresee it. Raises
+        NotConverged."""
         search = CLOSE_ON_CELLS if self._plan.form.by_cells else SEARCH
-        system, resting = self._system, None if near is None else near.resting
+        system, resting = self._system, None
         begin, slope = self._heat.start, np.asarray(-np.eye(len(self._heat.start)))
         speeds = np.append(omega, np.zeros(system.ring_count))
-        if near is not None:
-            slope, begin = near.steady.slope, near.steady.temperatures + (omega - near.omega) * near.by_omega
-            speeds = near.steady.films.speeds * (omega / near.omega)
+        if path:
+            omegas = [machine.omega for machine in path]
+            weights, resting = weights_at(omega, omegas), foreseen(omega, omegas, [each.resting for each in path])
+            begin = weighted(weights, [each.steady.temperatures for each in path[-len(weights) :]])
+            slope, speeds = path[-1].steady.slope, np.append(omega, resting.ring_speeds)
 
         def solve(viscosities: Array, clearances: Array) -> FilmHeat:
             nonlocal system, resting
             system = warm_system(self._case, self._plan, self._system, viscosities, clearances)
-            start = None if resting is None else resting.displacements
-            neighbour = None if system.remembers else resting  # what fronts of oil leave differs at another speed
-            resting = resting_position(system, omega, start, search, neighbour=neighbour)
+            if resting is not None and system.remembers:  # what fronts of oil leave differs at another speed
+                resting = resting.without_films
+            resting = resting_position(system, omega, None, search, resting)
             bodies = np.concatenate([[omega], resting.ring_speeds])
-            power, flow = _film_heat(system, resting.journals, bodies)
+            power, flow = _film_heat(system, resting, bodies)
             if self._concentric:
                 flow = self._heat.concentric * clearances**3 / viscosities
             return FilmHeat(power, flow, bodies)
 
         steady = steady_heat(self._heat.model, system.names, solve, begin, speeds, slope)
         assert resting is not None
-        return self._machine(system, resting, steady, near)
-
-    def _machine(
-        self, system: System, resting: RestingPosition, steady: SteadyHeat, near: WarmMachine | None
-    ) -> WarmMachine:
         t, films = steady.temperatures, steady.films
-        by_omega = np.zeros_like(t) if near is None else near.by_omega
-        if near is not None and abs(change := float(films.speeds[0]) - near.omega) > APART * near.omega:
-            by_omega = (t - near.steady.temperatures) / change
         rings = tuple(
             RingTemperature(
                 ring.name or "ring",
@@ -160,23 +152,26 @@ class WarmMachines:
             )
             for ring in self._heat.rings
         )
-        return WarmMachine(system, resting, steady, film_temperatures(steady, system.names), rings, by_omega)
+        return WarmMachine(system, resting, steady, film_temperatures(steady, system.names), rings)
 
 
-def _film_heat(system: System, journals: Array, bodies: Array) -> tuple[Array, Array]:
-    """Power in W and flow through the ends in m^3/s, (films,) each, of a machine at rest. journals (films, 2) in m;
-    bodies: (1 + rings,) speeds of rotor and rings in rad/s. Raises NotConverged.
+def _film_heat(system: System, resting: RestingPosition, bodies: Array) -> tuple[Array, Array]:
+    """Power in W and flow through the ends in m^3/s, (films,) each, of a machine at rest. bodies: (1 + rings,) speeds
+    of rotor and rings in rad/s. Raises NotConverged.
 
     Journal and shell put P = -M_J omega_J - M_S omega_S - F . (v_J - v_S) into a film. With Couette's resistance k to
     the slip and the force F at the displacement e this is k (omega_J - omega_S)^2 + (e x F)(omega_J + omega_S)/2 -
     F . e'. Between rough surfaces the friction of the summits makes heat in the same film.
     """
-    speeds = list(zip(journals, (system.turning[:, :2] @ bodies).tolist(), system.drags, strict=True))
+    turning = (system.turning[:, :2] @ bodies).tolist()
     rows = [
-        system.films.power_and_flow(i, system.felt(i, place), total, slip, drag)
-        for i, (place, (total, slip), drag) in enumerate(speeds)
+        system.films.power_and_flow(i, system.felt(i, place), total, slip, drag, near)
+        for i, (place, (total, slip), drag, near) in enumerate(
+            zip(resting.journals, turning, system.drags, resting.films or (None,) * len(turning), strict=True)
+        )
     ]
     power, flow = np.array(rows).T
     if system.asperities is not None:
-        power = power + [system.rubbing(i).power(place, *turns) for i, (place, turns, _) in enumerate(speeds)]
+        speeds = enumerate(zip(resting.journals, turning, strict=True))
+        power = power + [system.rubbing(i).power(place, *turns) for i, (place, turns) in speeds]
     return power, flow

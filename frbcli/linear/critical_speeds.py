@@ -19,6 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frbcli.analysis.peaks import prominent_peaks
 from frbcli.arrays import Array, Complex
 from frbcli.case.schema import Case
 from frbcli.equilibrium.coefficients import coefficients_of
@@ -213,8 +214,6 @@ class ResponsePeak:
 def peaks(model: SpeedModel) -> list[ResponsePeak]:
     """The peaks of the response between the speeds of a model, ascending, each at the point that moves the most: they
     belong to a pole, and stand out by PROMINENT of their height, and by NOTICED of the largest amplitude."""
-    from scipy.signal import find_peaks, peak_prominences
-
     low, high = float(model.omegas[0]), float(model.omegas[-1])
     poles = model.poles() if high > low else np.zeros(0, dtype=complex)
     undamped = np.array([model.half_width(pole) <= UNDAMPED * pole.real for pole in poles.tolist()], dtype=bool)
@@ -228,11 +227,11 @@ def peaks(model: SpeedModel) -> list[ResponsePeak]:
     largest = float(sizes[clear].max(initial=0.0))
     bounded: dict[int, ResponsePeak] = {}
     for point, size in enumerate(sizes.T):
-        for i in find_peaks(size)[0]:
+        for summit in prominent_peaks(size, max(NOTICED * largest, np.finfo(float).tiny)):
+            i = summit.place
             distance = np.abs(grid[i] - poles)
             pole = int(np.argmin(distance)) if len(poles) else -1
-            stands = float(peak_prominences(size, [i])[0][0])
-            if stands < max(PROMINENT * size[i], NOTICED * largest) or pole < 0 or undamped[pole]:
+            if summit.prominence < PROMINENT * size[i] or pole < 0 or undamped[pole]:
                 continue
             known = bounded[pole].amplitude if pole in bounded else 0.0
             if distance[pole] <= REACH * abs(poles[pole].imag) and size[i] > known:

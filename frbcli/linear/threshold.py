@@ -12,6 +12,7 @@ from frbcli.arrays import Array, Complex
 from frbcli.case.schema import Case
 from frbcli.equilibrium import hopf
 from frbcli.equilibrium.coefficients import LEAST
+from frbcli.equilibrium.resting import lagrange
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import NotConverged
 from frbcli.linear.stability_point import StabilityPoint, critical_eigenvalue, other_eigenvalues, point_at_rest
@@ -83,11 +84,10 @@ def deciding(points: Sequence[StabilityPoint]) -> tuple[int, ...]:
 def interpolated_root(speeds: Sequence[float], growth: Sequence[float]) -> float:
     """Where the growth passes zero for the first time, from below, by the polynomial through a few points, of which one
     below zero stands before one above."""
-    from scipy.interpolate import BarycentricInterpolator
-    from scipy.optimize import brentq  # takes long to load, as above
+    from scipy.optimize import brentq  # takes long to load
 
     above = next(i for i in range(1, len(growth)) if growth[i - 1] <= 0.0 < growth[i])
-    return float(brentq(BarycentricInterpolator(speeds, growth), speeds[above - 1], speeds[above]))
+    return float(brentq(lambda speed: lagrange(speed, speeds) @ growth, speeds[above - 1], speeds[above]))
 
 
 def _one_speed(point: StabilityPoint, speed: str, tried: int) -> str:

@@ -267,33 +267,24 @@ def _bordered(matrix: Array, other: Array) -> Array:
 
 @dataclass(frozen=True)
 class HeldRotor:
-    """A rotor at given u unknowns D: the places (2 films,) of its journals in m, at which it is held.
+    """A rotor at given places D (2 films,) of its journals in m, at which it is held.
 
-    load: (u,) force in N that it puts on the films at D = 0, and stiffness (u, u) N/m: it puts on load - stiffness @ D;
-    shape: (n,) m its deflection at D = 0, and following (n, u): its deflection is shape + following @ D. journals:
-    (c films, u) their coordinates by the unknowns where these are others, see whole_rotor, else None.
+    load: (2 films,) force in N that it puts on the films at D = 0, and stiffness (2 films, 2 films) N/m: it puts on
+    load - stiffness @ D; shape: (n,) m its deflection at D = 0, and following (n, 2 films): its deflection is shape +
+    following @ D.
     """
 
     load: Array
     stiffness: Array
     shape: Array
     following: Array
-    journals: Array | None = None
-
-    def places(self, unknowns: Array, films: int) -> Array:
-        """(films, c) coordinates of the journals."""
-        coordinates = unknowns if self.journals is None else self.journals @ unknowns
-        return np.asarray(coordinates.reshape(films, -1))
 
 
-def whole_rotor(rotor: LinearRotor, omega: float = 0.0) -> HeldRotor:
-    """The rotor at omega rad/s in all its degrees of freedom, for films that see tilts: a rigid shaft does not let all
-    coordinates of its journals be held at once. What no film holds, the angle of a ring, stays at zero."""
-    rotor, n = rotor.at(omega), rotor.size
-    p = rotor.journals.reshape(-1, n)
-    loose = ~(rotor.stiffness.any(axis=1) | p.any(axis=0))
-    stiffness = rotor.stiffness + np.diag(loose.astype(float))
-    return HeldRotor(np.where(loose, 0.0, rotor.static_load), stiffness, np.zeros(n), np.eye(n), p)
+def sprung(rotor: LinearRotor) -> tuple[Array, Array]:
+    """Static load (n,) in N and stiffness (n, n) of the rotor; what neither spring nor film holds, the angle of a ring,
+    stays at zero."""
+    loose = ~(rotor.stiffness.any(axis=1) | rotor.journals.any(axis=(0, 1)))
+    return np.where(loose, 0.0, rotor.static_load), rotor.stiffness + np.diag(loose.astype(float))
 
 
 def held_rotor(rotor: LinearRotor, omega: float = 0.0) -> HeldRotor:
@@ -304,14 +295,13 @@ def held_rotor(rotor: LinearRotor, omega: float = 0.0) -> HeldRotor:
     if rotor.ports:
         return _held_at_ports(rotor, omega)
     rotor = rotor.at(omega)
-    n, p = rotor.size, rotor.journals.reshape(-1, rotor.size)
+    n, p, (load, stiffness) = rotor.size, rotor.journals.reshape(-1, rotor.size), sprung(rotor)
     count = len(p)
-    loose = ~(rotor.stiffness.any(axis=1) | p.any(axis=0))
-    if np.any(rotor.static_load[loose]):
+    if np.any(load != rotor.static_load):
         raise NotConverged("The bearings do not hold the rotor: none has a stiffness or a film. Give one to them.")
-    held = np.block([[rotor.stiffness + np.diag(loose.astype(float)), p.T], [p, np.zeros((count, count))]])
+    held = np.block([[stiffness, p.T], [p, np.zeros((count, count))]])
     given = np.zeros((n + count, 1 + count))
-    given[:n, 0] = rotor.static_load
+    given[:n, 0] = load
     given[n:, 1:] = np.eye(count)
     try:
         solution = np.linalg.solve(held, given)

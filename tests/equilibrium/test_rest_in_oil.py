@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from functools import partial
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 import frbcli
-from frbcli.equilibrium import resting, static_films
+from frbcli.equilibrium import static_films
 from frbcli.equilibrium.newton import ForceBalance
-from frbcli.equilibrium.resting import held_in_plane
+from frbcli.equilibrium.resting import RestEquations
 from frbcli.film.rectangles.film import FilmForce
+from frbcli.rotor.assembly import sprung
 from frbcli.scene.machine.system import System
 
 OMEGA = 2.0 * math.pi * 150.0
@@ -50,27 +49,24 @@ def test_a_film_foresees_its_oil(system: System) -> None:
     np.testing.assert_allclose(change, there.force - here.force, rtol=2e-3)
 
 
-def balance_of(system: System) -> Callable[..., ForceBalance[tuple[FilmForce, ...]]]:
-    return partial(resting._balance, system, held_in_plane(system, OMEGA), OMEGA, ())
-
-
 def test_slopes_know_the_oil_that_goes_missing(system: System) -> None:
-    """Journals that move change the oil of their films, with it the speed of the ring, and so the forces of both. By
-    central differences, films and ring speed settled at each place."""
-    at = balance_of(system)
-    place = np.array([[2.0e-6, -3.0e-7], [2.6e-5, -2.8e-6]])
+    """Journals that move, and a ring that turns otherwise, change the oil of the films, and so forces and torques. By
+    central differences, the films settled at each place."""
+    equations = RestEquations(system, OMEGA)
+    held, place = equations.held, np.array([2.0e-6, -3.0e-7, 2.6e-5, -2.8e-6])
+    unknowns = equations.with_rings(held.shape + held.following @ place)
 
     def settled(moved: NDArray[np.float64]) -> ForceBalance[tuple[FilmForce, ...]]:
-        found = at(moved, None)
+        found = equations.balance(moved, ())
         for _ in range(3):
-            found = at(moved, found)
+            found = equations.balance(moved, found.films)
         return found
 
-    here = settled(place)
-    for column in range(4):
-        step = np.zeros(4)
-        step[column] = 2e-10
-        ahead, behind = (settled(place + side * step.reshape(2, 2)).residual for side in (1.0, -1.0))
-        expected = ((ahead - behind) / 4e-10).reshape(2, 2)
-        for found, known in zip(here.slope[:, column].reshape(2, 2), expected, strict=True):
-            np.testing.assert_allclose(found, known, atol=2e-3 * np.abs(known).max())
+    here, n, (_, stiffness) = settled(unknowns), system.rotor.size, sprung(system.rotor)
+    stiffness[-1] = 0.0
+    for column in (*np.flatnonzero(system.rotor.journals.any(axis=(0, 1))), n - 1):  # no film sees the disk
+        step = 2e-10 * np.eye(n)[column]
+        ahead, behind = (settled(unknowns + side * step).residual for side in (1.0, -1.0))
+        known, found = (each + stiffness[:, column] for each in ((ahead - behind) / 4e-10, here.slope[:, column]))
+        for rows in (np.arange(n - 1), [n - 1]):  # forces, and the torque on the ring
+            np.testing.assert_allclose(found[rows], known[rows], atol=2e-3 * np.abs(known[rows]).max())

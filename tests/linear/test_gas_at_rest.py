@@ -115,8 +115,8 @@ def test_a_rest_is_sought_from_the_film_beside_it_and_is_the_same(monkeypatch: p
     iterations: list[int] = []
     solved = FilmSolver.steady
 
-    def counting(solver: FilmSolver, *asked: Any) -> VolumeSolution:
-        found = solved(solver, *asked)
+    def counting(solver: FilmSolver, *asked: Any, **how: Any) -> VolumeSolution:
+        found = solved(solver, *asked, **how)
         iterations.append(found.iterations)
         return found
 

@@ -70,10 +70,11 @@ def command(
 
     For a turbocharger also the natural frequencies of its rotor, free and on springs as stiff as its films.
     """
-    from frbcli.cycles.explain import threshold_kind
     from frbcli.errors import NotConverged
     from frbcli.linear.modes import natural_modes, own_reduction
     from frbcli.linear.stability import stability
+    from frbcli.scene.gate.gate import faults
+    from frbcli.scene.gate.rule import CYCLES
 
     if shapes is not None and (stiffness is not None or speeds):
         raise click.UsageError("--shapes stands alone: it is of one speed, on the films of the case.")
@@ -87,7 +88,11 @@ def command(
         return None
     with computing(terminal, case, kernels="rest") as shown:
         analysis = stability(case, speeds or None, shown.counting(), with_threshold)
-        kind = None if analysis.threshold is None else threshold_kind(case, analysis.threshold.speed_Hz)
+        kind = None
+        if analysis.threshold is not None and not faults(case, CYCLES):
+            from frbcli.cycles.explain import threshold_kind  # takes long to load
+
+            kind = threshold_kind(case, analysis.threshold.speed_Hz)
     reduced = own_reduction(case, analysis.points)
     _show(terminal, analysis, kind, reduced, bool(speeds))
     written = places.write(terminal, analysis, "Campbell diagram")

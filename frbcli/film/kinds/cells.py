@@ -205,8 +205,7 @@ class CellFilms(VolumeKind):
         return shares
 
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
-        start = None if near is None else near.foreseen(place, total).field
-        return steady_force(self.own[i], place, rate, total, start)
+        return steady_force(self.own[i], place, rate, total, _field(place, total, near))
 
     def linear(self, i: int, cells: tuple[int, int]) -> LinearOf:
         film = self.own[i]
@@ -271,10 +270,13 @@ class CellFilms(VolumeKind):
             flows[PASSED, i, flow] += spilled
         return force(film, film.mean_pressure(film.cells(w, gas)))
 
-    def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
+    def power_and_flow(
+        self, i: int, place: Array, total: float, slip: float, drag: float, near: FilmForce | None = None
+    ) -> tuple[float, float]:
         film, d = self.own[i], place / self.clearances[i]
         motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), total)
-        solution, at = steady_solution(film, motion), film_at(film, math.hypot(*d), total)
+        solution = steady_solution(film, motion, _field(place, total, near))
+        at = film_at(film, math.hypot(*d), total)
         acting = loads(at, motion, solution, slip, self.factor)
         moment = float(place[0] * acting.force[1] - place[1] * acting.force[0])
         power = -acting.torque.couette * slip + 0.5 * moment * total
@@ -335,6 +337,11 @@ class CellFilms(VolumeKind):
         tables = [film for film in films if isinstance(film, MeanFilm)]
         pairs = enumerate(zip(self.own, tables, strict=True))
         return tuple(mean_end_flow(own, fields, self.data, i) for i, (own, fields) in pairs)
+
+
+def _field(place: Array, total: float, near: FilmForce | None) -> Array | None:
+    """The field to begin from with the journal at rest at `place` (2,), see Films.force."""
+    return None if near is None else near.foreseen(place, total).field
 
 
 def no_wet(films: Sequence[VolumeFilm]) -> Array:

@@ -191,9 +191,11 @@ class Films(ABC):
         return {}
 
     @abstractmethod
-    def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
+    def power_and_flow(
+        self, i: int, place: Array, total: float, slip: float, drag: float, near: FilmForce | None = None
+    ) -> tuple[float, float]:
         """Power in W that a film at rest dissipates, and flow in m^3/s through its open ends. drag: eta R^3 B / C of
-        the bearing in N m s. Raises NotConverged."""
+        the bearing in N m s; near: see force. Raises NotConverged."""
 
     def heat_ends(self) -> Any:
         """Data from which the heat of the time loop computes the oil that leaves; empty of films that follow a tilt,
@@ -313,6 +315,8 @@ class NoFilms(Films):
         """Raises IndexError: there is no film."""
         raise IndexError(i)
 
-    def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
+    def power_and_flow(
+        self, i: int, place: Array, total: float, slip: float, drag: float, near: FilmForce | None = None
+    ) -> tuple[float, float]:
         """Raises IndexError: there is no film."""
         raise IndexError(i)

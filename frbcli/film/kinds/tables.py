@@ -52,7 +52,9 @@ class TableFilms(Films):
     def heat_ends(self) -> Any:
         return self.end_flows
 
-    def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
+    def power_and_flow(
+        self, i: int, place: Array, total: float, slip: float, drag: float, near: FilmForce | None = None
+    ) -> tuple[float, float]:
         d, c = place / self.clearances[i], self.clearances[i]
         power = couette_power(place, c, self.force(i, place, np.zeros(2), total).force, total, slip, drag)
         scale = 1.0 if self.scales is None else self.scales[i]

@@ -114,7 +114,9 @@ class TiltedFilms(VolumeKind):
     def fields_of_films(self) -> tuple[tuple[int, VolumeFilm], ...]:
         return tuple((i, land.film) for i, land in self._lands)
 
-    def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
+    def power_and_flow(
+        self, i: int, place: Array, total: float, slip: float, drag: float, near: FilmForce | None = None
+    ) -> tuple[float, float]:
         """See Films.power_and_flow: the moment that turns against half of the total is the moment of the pressures
         about the middle of the shell, each where it acts."""
         couette, flow, load = 0.0, 0.0, np.zeros(COORDINATES)
@@ -190,9 +192,11 @@ class InclinedFilms(Films):
         by_place, by_rate = (slopes[PLANE, PLANE] for slopes in (force.by_displacement, force.by_velocity))
         return FilmForce(force.force[PLANE], by_place, by_rate, force.field)
 
-    def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
+    def power_and_flow(
+        self, i: int, place: Array, total: float, slip: float, drag: float, near: FilmForce | None = None
+    ) -> tuple[float, float]:
         whole = np.concatenate([place, self.tilted.standing[i, 2:]])
-        return self.tilted.power_and_flow(i, whole, total, slip, drag)
+        return self.tilted.power_and_flow(i, whole, total, slip, drag, near)
 
     def ends(self, places: Array) -> Array:
         return self.tilted.ends(np.hstack([places, self.tilted.standing[:, 2:]]))

@@ -97,15 +97,6 @@ class Rubbing:
             return film
         return film.plus(self.force(place, rate, slip, shell))
 
-    def pulled(self, place: Array, slip: float, shell: float) -> tuple[float, float, float]:
-        """Torques in N m on the journal and on the shell, and the moment of the force on the journal about the middle
-        of the shell, with the journal at rest at `place` (2,) in m; see force."""
-        if self.surfaces is None:
-            return 0.0, 0.0, 0.0
-        e_x, e_y = place[:2].tolist()
-        rubbed = rub(self.surfaces, self.film, self.clearance, e_x, e_y, 0.0, 0.0, slip, shell)
-        return rubbed.torque, rubbed.shell_torque, e_x * rubbed.f_y - e_y * rubbed.f_x
-
     def power(self, place: Array, total: float, slip: float) -> float:
         """Heat in W that friction makes while the journal rests at `place` (2,) in m; total, slip: omega_J + omega_S
         and omega_J - omega_S in rad/s."""

@@ -17,7 +17,7 @@ import numpy as np
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Table, Tabular, table_of
 from frbcli.equilibrium.coefficients import RestingFilm, coefficient_error, place_error, resting_film
-from frbcli.equilibrium.ring_speed import ring_speeds
+from frbcli.equilibrium.ring_speed import dragged_speeds
 from frbcli.equilibrium.static_films import StaticFilms, static_films
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import NotConverged, input_error
@@ -25,7 +25,6 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.film.contact_gap import closes_freely_until
 from frbcli.linear.columns import sheet_columns
 from frbcli.linear.sheets.film_state import FilmState, film_state, no_state, under_vertical_load
-from frbcli.rotor.assembly import held_rotor
 from frbcli.scene.films import bearing_films
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import BEARING, CHART, LOADED
@@ -181,7 +180,7 @@ def sommerfeld_chart(
     speed = max(_speeds(case)) if speed_Hz is None else speed_Hz
     static = static_films(case, 0.0, speed)
     system, volumes, omega = static.system, static.fields, 2.0 * math.pi * speed
-    spins = ring_speeds(system, held_rotor(system.rotor, omega), omega, np.zeros((len(system.names), 2)))
+    spins = dragged_speeds(system, omega, np.zeros((len(system.names), system.films.coordinates)))
     bodies, omegas = np.concatenate([[omega], spins]), system.omegas(omega, spins)
     points = []
     for number, eccentricity in enumerate(eccentricities):

@@ -170,14 +170,16 @@ class Fields:
         factor: see loads. Raises NotConverged."""
         journal, shell = speeds
         solvers: dict[VolumeFilm, FilmSolver] = {}
+        near: dict[int, Array] = {}  # fields in the place before
         fields = []
         for d in places:
             p_max, torques, flow = -math.inf, np.zeros(2), 0.0
-            for film, motion in volume.parts(d, journal + shell):
+            for number, (film, motion) in enumerate(volume.parts(d, journal + shell)):
                 if film not in solvers:
                     solvers[film] = FilmSolver(film)
                 solver = solvers[film]
-                solution = solver.steady(motion)
+                solution = solver.steady(motion, near.get(number))
+                near[number] = solution.field
                 its = loads(film, motion, solution, journal - shell, factor)
                 p_max = max(p_max, its.p_max)
                 torques += (its.torque.journal, its.torque.shell)
