@@ -76,7 +76,7 @@ def words_of(line: str) -> list[str]:
     ends = [words.index(sign) for sign in ("|", ">", "&&") if sign in words]
     # A run is a measurement, too: a long one, in which orders can be told.
     measured = {"RUN.h5": "jeffcott.h5", "FILE": "jeffcott.h5"} if {"--measured", "--order"} & set(words) else {}
-    listed = {"FILE": "measured.csv"} if "--list" in words else {}
+    listed = {"FILE": "measured.csv"} if "--columns" in words or "--list" in words else {}
     supported = {"RUN.h5": "supported.h5"} if "support" in words else {}
     shaken = {"CASE": "shaken.toml"} if "--excitation" in words else {}
     known = PLACEHOLDERS | measured | listed | supported | shaken

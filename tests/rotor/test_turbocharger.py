@@ -249,7 +249,7 @@ def test_command_with_a_stiffness(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "80")
-    call = ["stability", "turbocharger-heavy", "--stiffness", "5e6 N/m", "--speed", "350 Hz", "--json"]
+    call = ["stability", "turbocharger-heavy", "--modes", "5e6 N/m", "--speed", "350 Hz", "--json"]
     assert frb(call) == 0
     said = capsys.readouterr()
     document = json.loads(said.out)
@@ -265,7 +265,7 @@ def test_command_with_a_stiffness(
 
 @pytest.mark.parametrize("stiffness", ["0 N/m", "5 kg"])
 def test_command_refuses_a_stiffness(stiffness: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["stability", "turbocharger-heavy", "--no-picture", "--stiffness", stiffness]) == 2
+    assert frb(["stability", "turbocharger-heavy", "--no-picture", "--modes", stiffness]) == 2
     assert stiffness.split()[0] in capsys.readouterr().err
 
 

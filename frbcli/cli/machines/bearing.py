@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.files import OUTPUT, forced, here
-from frbcli.cli.options import LOAD_OPTION, REST_OPTION, speeds_option
+from frbcli.cli.files import CASE_FILE, forced, here
+from frbcli.cli.options import LOAD_OPTION, REST_OPTION, Command, film_option, speeds_option
 from frbcli.cli.outputs import OutputOptions, outputs_options
 from frbcli.cli.progress import computing, display
 from frbcli.errors import NotConverged
@@ -37,18 +37,18 @@ PRESSED = (
 )
 
 
-@click.command()
+@click.command(cls=Command)
 @case_argument
 @click.option("--over", type=click.Choice(["speed", "eccentricity"]), default="speed", show_default=True,
-              help="Number that is varied; over the eccentricity the load is computed.")  # fmt: skip
+              help="Horizontal axis; over the eccentricity the load is computed.")  # fmt: skip
 @speeds_option("20 over the range; with --over eccentricity the highest", REST_OPTION)
 @click.option("--load", "loads", type=LOAD_OPTION, multiple=True, metavar="LOAD",
-              help='Load along -y on a single film, e.g. "30 N"; repeatable, on each of ball bearings. '
-              "[the rotor's]")  # fmt: skip
-@click.option("--ross", metavar="FILE", type=OUTPUT,
+              show_default="the rotor's",
+              help='Load along -y on a single film, e.g. "30 N"; repeatable, on each of ball bearings.')  # fmt: skip
+@click.option("--ross", metavar="FILE.toml", type=CASE_FILE,
               help="Write stiffness and damping over speed as ROSS reads them, a file per film.")  # fmt: skip
-@click.option("--film", metavar="FILM", default=None, help="Show this film alone, with all of its numbers.")
-@click.option("--all", "everything", is_flag=True, help="Show K, C and all speeds of all films. [a short sheet]")
+@film_option("Show this film alone, with all of its numbers.", "all")
+@click.option("--all", "everything", is_flag=True, help="Show K, C and all speeds of all films.")
 @outputs_options("CASE-bearing.png, here")
 @output_options
 def command(
@@ -153,7 +153,7 @@ def _show(terminal: Terminal, sheet: BearingSheet, films: Sequence[str], full: b
     for film, label in zip(sheet.films, sheet.labels, strict=True):
         if film not in films:
             continue
-        name = " ".join(filter(None, (sheet.case.heading, film)))
+        name = " ".join(filter(None, (sheet.case.heading, film.replace("_", " "))))
         warm = {} if sheet.case.heat is None else {WARM: "film when everything is warm"}
         mixed = {MIXED: "mixed friction"} if sheet.case.contact.rough else {}
         matrices = dict(zip(MATRICES, ("stiffness K in N/um", "damping C in N s/mm"), strict=True))
@@ -170,7 +170,7 @@ def _show(terminal: Terminal, sheet: BearingSheet, films: Sequence[str], full: b
         terminal.sentence(SETTLED)
     if sheet.pressed:
         state = max(sheet.pressed, key=lambda each: each.error)
-        film = f"The film {state.film}" if state.film else "The film"
+        film = f"The film {state.film.replace('_', ' ')}" if state.film else "The film"
         terminal.sentence(PRESSED.format(film, 1e6 * state.film_thickness_min, sheet.case.contact.eccentricity))
     problems = [point for point in sheet.points if point.problem]
     if problems:

@@ -80,7 +80,7 @@ def _film_lines(point: StabilityPoint, speed: str) -> list[tuple[str, ...]]:
         return [(speed, NONE, *[""] * 5)]
     count = max(len(point.films), len(point.growing))
     places = table_of(FILM, point.films).cells(STABILITY)
-    films = [(film.name, *place) for film, place in zip(point.films, places, strict=True)]
+    films = [(film.name.replace("_", " "), *place) for film, place in zip(point.films, places, strict=True)]
     modes = table_of(MODES, point.modes_with_errors[:count]).cells(STABILITY)
     films += [("",) * 3] * (count - len(films))
     modes += [("",) * 3] * (count - len(modes))

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options, wrapped
-from frbcli.cli.files import OUTPUT, check_outputs, force_option, here, next_to
-from frbcli.cli.options import gathered, look_options
+from frbcli.cli.files import RUN_FILE, check_outputs, force_option, here, next_to
+from frbcli.cli.options import Command, gathered, look_options
 from frbcli.cli.outputs import draw, picture_switch
 from frbcli.cli.progress import Display, LONGEST_LEFT_s, computing, display, progress_line
 from frbcli.columns import table_of
@@ -51,7 +51,9 @@ class RunOptions:
 
 def run_options(function: Function) -> Function:
     """Give a command the options of a run; it receives `options: RunOptions`."""
-    output = click.option("-o", "--output", type=OUTPUT, metavar="RUN.h5", help="Run file. [CASE.h5, here]")
+    output = click.option(
+        "-o", "--output", type=RUN_FILE, metavar="RUN.h5", show_default="CASE.h5, here", help="Run file."
+    )
     resume = click.option("--resume", is_flag=True, help="Resume an interrupted run in the run file.")
     force = force_option("Replace the run in the run file, and a picture that frb did not write.", exposed=True)
     verify = click.option(
@@ -67,7 +69,7 @@ def run_options(function: Function) -> Function:
     return output(resume(force(verify(explain(uncertainty(picture_switch(look_options(gathering))))))))
 
 
-@click.command()
+@click.command(cls=Command)
 @case_argument
 @run_options
 @output_options
@@ -78,7 +80,7 @@ def runup(case: Case, options: RunOptions, terminal: Terminal) -> int:
     return transient("runup", run.runup, case, options, terminal)
 
 
-@click.command()
+@click.command(cls=Command)
 @case_argument
 @run_options
 @output_options

@@ -186,7 +186,7 @@ class FilmForm:
 
 
 def cells_B(cells: tuple[int, int], films: int) -> float:
-    """Bytes of films on cells or elements (around, along)."""
+    """Bytes of films of cells or elements (around, along)."""
     around, along = cells
     return films * (8.0 * BLOCKS * around * along**2 + CELL_B * around * along)
 
