@@ -370,14 +370,14 @@ def _overlaid(ax: Axes, label: str) -> Iterator[None]:
     changed = {colour: PALETTE[(len(before) + number) % len(PALETTE)] for number, colour in enumerate(own)}
     if before:
         for line in drawn:
-            line.set_color(changed.get(_colour(line), line.get_color()))
+            line.set_color(changed.get(_colour(line), _colour(line)))
         for area in filled:
-            for colour in {to_hex(face) for face in area.get_facecolor()} & set(changed):
+            for colour in {to_hex(cast("Any", face)) for face in area.get_facecolor()} & set(changed):
                 area.set_facecolor(changed[colour])
 
 
 def _colour(line: Line2D) -> str:
-    return to_hex(cast(Any, line.get_color()))
+    return str(to_hex(cast("Any", line.get_color())))
 
 
 def _axes(ax: Axes | None) -> Axes:
