@@ -185,6 +185,22 @@ def test_the_command_writes_table_picture_and_coefficients(
     assert set(element) == {"n", "tag", "frequency", *(f"{c}{a}" for c in "kc" for a in ("xx", "xy", "yx", "yy"))}
 
 
+def test_several_films_have_a_line_each_and_their_sum(capsys: pytest.CaptureFixture[str]) -> None:
+    """Of both bearings of a symmetric rotor; the ring's speed is the one of the sheet."""
+    words = ["bearing", "floating-ring", "--speed", "100 Hz", "--set", "accuracy.mesh=[4, 16]", "--no-picture"]
+    assert frb([*words, "--json"]) == 0
+    films = json.loads(capsys.readouterr().out)["points"]
+    assert frb(words) == 0
+    said = capsys.readouterr().out
+    rows = {line.split()[0]: line.split() for line in said.splitlines() if line.startswith("  ") and line.strip()}
+    for film in films:
+        assert float(rows[film["film"]][5]) == pytest.approx(film["power_W"], rel=1e-3)
+        assert float(rows[film["film"]][6]) == pytest.approx(6e4 * film["side_flow_m3_s"], rel=1e-2)
+    assert float(rows["machine,"][-2]) == pytest.approx(2.0 * sum(film["power_W"] for film in films), rel=1e-3)
+    assert f"ring {films[0]['shell_speed_Hz'] / 100.0:.3f}" in said
+    assert max(map(len, said.splitlines())) <= 80
+
+
 def test_several_films_have_a_file_for_ross_each(tmp_path: Path) -> None:
     """`ross.BearingElement.load` takes the first table of a file and passes over the others."""
     for film, path in ross_of("floating-ring", tmp_path, "inner", "outer").items():

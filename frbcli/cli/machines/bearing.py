@@ -19,8 +19,10 @@ from frbcli.errors import NotConverged
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import pandas as pd
+
     from frbcli.case.schema import Case
-    from frbcli.linear.sheets.ball import BallSheet
+    from frbcli.linear.sheets.ball import BallSheet, BallState
     from frbcli.linear.sheets.bearing import BearingSheet
     from frbcli.linear.sheets.film_state import FilmState
 
@@ -91,7 +93,7 @@ def command(
         else:
             sheet = sommerfeld_chart(case, speed_Hz=speeds[0] if speeds else None, observe=shown.counting())
     _show(terminal, sheet, (film,) if film is not None else sheet.films, everything or film is not None)
-    _write_ross(terminal, sheet, elements)
+    _write_ross(terminal, sheet.to_pandas(), elements)
     terminal.emit(
         {
             "command": "bearing",
@@ -134,30 +136,36 @@ def _ross_files(case: Case, ross: Path | None) -> dict[str, Path]:
     return ross_files(ross, [place.name for place in bearing_films(case)])
 
 
-def _write_ross(terminal: Terminal, sheet: BearingSheet, elements: dict[str, Path]) -> None:
+def _write_ross(terminal: Terminal, table: pd.DataFrame, elements: dict[str, Path]) -> None:
+    """table: with a column "film", of ball bearings their names."""
     from frbcli.results.export import write_ross
 
-    table = sheet.to_pandas()
     for film, path in elements.items():
         write_ross(table[table["film"] == film], path, forced())
         terminal.result(f"ROSS: {path}")
+
+
+def _show_problems(terminal: Terminal, points: Sequence[FilmState] | Sequence[BallState]) -> None:
+    problems = [point for point in points if point.problem]
+    if problems:
+        terminal.result(f"No state at {len(problems)} of {len(points)} points. The first: {problems[0].problem}")
 
 
 def _show(terminal: Terminal, sheet: BearingSheet, films: Sequence[str], full: bool) -> None:
     """The sheets of some films; not full: without matrices, at so many of the points as fill a screen, unless there are
     few of them."""
     from frbcli.columns import legend, table_of, with_speeds_in
-    from frbcli.film.cavitation.table import law_named
     from frbcli.linear.columns import FILMS, MATRICES, MIXED, WARM
     from frbcli.linear.sheets.film_state import heat_capacity
 
     if len(films) > 1:
         _show_machine(terminal, sheet, full)
         if not full:
+            _show_notes(terminal, sheet)
             return
     columns, points = with_speeds_in(terminal.speeds, sheet.columns), len(sheet.of(films[0]))
     full = full or points <= FEW_POINTS
-    rows = points if full else max(FEW_POINTS, SCREEN_ROWS // len(films))
+    rows = points if full else SCREEN_ROWS
     for film, label in zip(sheet.films, sheet.labels, strict=True):
         if film not in films:
             continue
@@ -172,17 +180,21 @@ def _show(terminal: Terminal, sheet: BearingSheet, films: Sequence[str], full: b
     if sheet.case.contact.rough:
         terminal.sentence(f"{legend(columns, MIXED)}.")
     if not full:
-        one = f", --film {films[0]} one film" if len(films) > 1 else ""
-        terminal.sentence(f"--all shows stiffness K, damping C and all {points} points{one}.")
+        terminal.sentence(f"--all shows stiffness K, damping C and all {points} points.")
+    _show_notes(terminal, sheet)
+
+
+def _show_notes(terminal: Terminal, sheet: BearingSheet) -> None:
+    """What limits the numbers: settled oil, films pressed into their shell, points without a state."""
+    from frbcli.film.cavitation.table import law_named
+
     if any(law_named(law).keeps_oil for law in sheet.laws):
         terminal.sentence(SETTLED)
     if sheet.pressed:
         state = max(sheet.pressed, key=lambda each: each.error)
         film = f"The film {state.film.replace('_', ' ')}" if state.film else "The film"
         terminal.sentence(PRESSED.format(film, 1e6 * state.film_thickness_min, sheet.case.contact.eccentricity))
-    problems = [point for point in sheet.points if point.problem]
-    if problems:
-        terminal.result(f"No state at {len(problems)} of {len(sheet.points)} points. The first: {problems[0].problem}")
+    _show_problems(terminal, sheet.points)
 
 
 def _show_machine(terminal: Terminal, sheet: BearingSheet, full: bool) -> None:
@@ -240,7 +252,7 @@ def ball_sheet(
     with display(terminal) as shown:
         sheet = ball_bearing_sheet(case, speeds or None, loads, shown.counting())
     _show_balls(terminal, sheet)
-    _write_ball_ross(terminal, sheet, elements)
+    _write_ross(terminal, sheet.to_pandas().rename(columns={"bearing": "film"}), elements)
     terminal.emit(
         {
             "command": "bearing",
@@ -263,15 +275,5 @@ def _show_balls(terminal: Terminal, sheet: BallSheet) -> None:
         for table, title in titles.items():
             terminal.show(title, table_of(BALL_SHEET, states), table)
     terminal.sentence(f"{legend(BALL_SHEET, BALLS)}. All per bearing, with one ball in the line of the load.")
-    problems = [point for point in sheet.points if point.problem]
-    if problems:
-        terminal.result(f"No state at {len(problems)} of {len(sheet.points)} points. The first: {problems[0].problem}")
+    _show_problems(terminal, sheet.points)
 
-
-def _write_ball_ross(terminal: Terminal, sheet: BallSheet, elements: dict[str, Path]) -> None:
-    from frbcli.results.export import write_ross
-
-    table = sheet.to_pandas().rename(columns={"bearing": "film"})
-    for name, path in elements.items():
-        write_ross(table[table["film"] == name], path, forced())
-        terminal.result(f"ROSS: {path}")

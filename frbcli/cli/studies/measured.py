@@ -117,7 +117,7 @@ def run_of(path: Path, measurement: Measurement | None, terminal: Terminal, rela
     to a clearance. Raises as read_run and measured_run do."""
     from frbcli.results.measured.reading import READERS, read_columns
 
-    if not path.exists():
+    if not path.exists() and path.suffix.lower() in READERS:
         read_columns(path)  # which raises: a file that is not there is said before its options are
     if path.suffix.lower() in READERS:
         if measurement is None:
