@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from frbcli.errors import input_error
-from frbcli.plot.style import Picture, new_figure, styled
+from frbcli.plot.style import Picture, new_figure, styled, wrap_title
 
 PICTURES = {  # class of a result: module in this room, and its function
     "AccuracyLadder": "accuracy:accuracy_figure",
@@ -148,6 +148,7 @@ def fit(
                 axes.set_ylim(*_in_hertz(axes.yaxis, y_limits))
     if size_in is not None:
         figure.set_size_inches(*size_in)
+        wrap_title(figure)
     return figure
 
 

@@ -17,6 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.text import Annotation
 from matplotlib.ticker import LogLocator, MaxNLocator, ScalarFormatter
 from numpy.typing import NDArray
 
@@ -301,9 +302,14 @@ def draw_levels(
         axes.set_yscale("log")
         axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.yaxis.set_major_formatter(ScalarFormatter())
+    named: list[Annotation | None] = []
     for label, frequency in orders(run, signal, found, scale.orders):
         axes.plot(across, frequency, color="white", linewidth=0.8, linestyle=(0, (2, 3)))
-        _label_line(axes, across, frequency, label, (bottom, float(found.frequency_Hz[-1])))
+        named.append(_label_line(axes, across, frequency, label, (bottom, float(found.frequency_Hz[-1]))))
+    texts = [text for text in named if text is not None]
+    boxes = [text.get_window_extent() for text in texts]
+    for number, text in enumerate(texts):  # of lines that are close the first one is named
+        text.set_visible(not any(boxes[number].overlaps(box) for box in boxes[:number]))
     axes.grid(False)
     axes.set_xlabel(WORDS[over])
     axes.set_ylabel("frequency in Hz")
@@ -325,16 +331,18 @@ def orders(
     return [*lines, ("(ω$_R$+ω$_F$)/2", (found.speed_Hz + ring) / 2), ("ω$_F$/2", ring / 2)]
 
 
-def _label_line(axes: Axes, across: Array, frequency: Array, label: str, limits: tuple[float, float]) -> None:
+def _label_line(
+    axes: Axes, across: Array, frequency: Array, label: str, limits: tuple[float, float]
+) -> Annotation | None:
     """Write the name of a line next to it, on the left of where it is highest yet well inside the picture; of a level
     line on the right of where that begins, away from rising ones, and small, since such lines lie close."""
     span = abs(across[-1] - across[0])
     middle = np.abs(across - 0.5 * (across[0] + across[-1]))
     inside = (middle < 0.43 * span) & (frequency > limits[0]) & (frequency < limits[1])
     if not inside.any():
-        return
+        return None
     place, level = int(np.argmax(np.where(inside, frequency, -np.inf))), np.ptp(frequency[inside]) == 0.0
-    axes.annotate(
+    return axes.annotate(
         label,
         (across[place], frequency[place]),
         xytext=(-3, 1 if level else 4),
