@@ -285,17 +285,17 @@ class WhirlSpan:
 
 def whirls(events: Sequence[Mapping[str, Any]]) -> list[WhirlSpan]:
     """All whirls of a run in the order in which they begin; those of a film end in this order, too."""
-    found: list[WhirlSpan] = []
+    spans: list[WhirlSpan] = []
     for event in with_whirl_names(events):
         film = str(event.get("film") or event.get("point") or "")
-        own = [number for number, whirl in enumerate(found) if whirl.film == film and whirl.end is None]
+        own = [number for number, whirl in enumerate(spans) if whirl.film == film and whirl.end is None]
         if event["kind"] == "onset":
-            found.append(WhirlSpan(event["whirl"], film, event))
+            spans.append(WhirlSpan(event["whirl"], film, event))
         elif event["kind"] == "lock-in" and own:
-            found[own[-1]] = replace(found[own[-1]], locked=event)
+            spans[own[-1]] = replace(spans[own[-1]], locked=event)
         elif event["kind"] == "offset" and own:
-            found[own[0]] = replace(found[own[0]], end=event)
-    return found
+            spans[own[0]] = replace(spans[own[0]], end=event)
+    return spans
 
 
 def _follow(spectra: Iterator[list[tuple[float, float]]], window_s: float) -> list[_Ridge]:
