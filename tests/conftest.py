@@ -59,6 +59,24 @@ def perturbed_round_off(request: pytest.FixtureRequest) -> Iterator[None]:
         yield
 
 
+# Folders whose tests draw pictures: each picture is looked at.
+DRAWN = ("analysis", "balancing", "bearing_tests", "cli", "cycles", "docs", "linear", "plot", "report", "studies")
+
+
+@pytest.fixture(autouse=True)
+def readable_pictures(request: pytest.FixtureRequest) -> Iterator[None]:
+    """No text of a picture reaches out of it or covers another one, see picture_texts.py."""
+    if request.path.relative_to(TESTS).parts[0] not in DRAWN:
+        yield
+        return
+    import picture_texts
+
+    picture_texts.watch()
+    picture_texts.seen.clear()
+    yield
+    assert not picture_texts.seen
+
+
 def pytest_configure(config: pytest.Config) -> None:
     """Have pytest-xdist keep the order below; its own one begins with the files of most tests."""
     if hasattr(config.option, "loadscopereorder"):

@@ -49,13 +49,14 @@ SHOWN: dict[str, tuple[list[str], str]] = {
     "stability": (["stability", "jeffcott"], "jeffcott-campbell.png"),
     "limit-cycles": (["limit-cycles", "jeffcott"], "jeffcott-limit-cycles.png"),
     "response": (["response", "jeffcott", *SHORT], "jeffcott-response.png"),
-    "balance": (["balance", "run.h5", "--planes", "disk", "--at", "100 Hz"], ""),
+    "balance": (["balance", "run.h5", "--planes", "disk", "--speed", "100 Hz"], ""),
     "accuracy": (["accuracy", "jeffcott", "--theory", "short", "--until", "1 s"], "jeffcott-accuracy.png"),
     "sweep": (["sweep", "jeffcott", *SHORT, "--stability", "--jobs", "1", "--set",
                "bearing.clearance=30 um,35 um,40 um,45 um", "-o", "study"], "study/sweep.png"),
     "report": (["report", "run.h5"], ""),
     "export": (["export", "run.h5"], ""),
     "warm-up": (["warm-up", "jeffcott"], ""),
+    "docs": (["docs", "conventions", "--text"], ""),
     "cases": (["cases"], ""),
     "schema": (["schema"], ""),
 }  # fmt: skip
@@ -218,7 +219,8 @@ def configuration(source: Path, target: Path) -> str:
               "limit-cycles", "gas-and-contact", "measurements", "sweeps", "report", "standards")  # fmt: skip
     concepts = ("conventions", "theory", "equations", "couplings", "accuracy", "validation", "textbooks")
     tables = ("case-file", "matrix", "columns", "command-line")
-    development = ("architecture", "adding-a-model", "accuracy-measured", "limit-cycles-method", "hard-cases")
+    development = ("contributing", "architecture", "adding-a-model", "accuracy-measured", "limit-cycles-method",
+                   "hard-cases")  # fmt: skip
 
     def entries(names: tuple[str, ...]) -> str:
         return "\n".join(f"      - {name.replace('-', ' ')}: {name}.md" for name in names)

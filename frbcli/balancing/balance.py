@@ -57,7 +57,7 @@ def computed_influence(
     Raises InputError as response does, NotConverged if the rotor does not rest at a speed."""
     linear = response(case, speeds_Hz)
     if len(linear.speeds_Hz) < len(set(speeds_Hz)):
-        raise NotConverged("The rotor has no static equilibrium at some of the speeds. Choose others, by --at.")
+        raise NotConverged("The rotor has no static equilibrium at some of the speeds. Choose others, by --speed.")
     influence = []
     for point in linear.resting:
         rotor, omega = point.rotor, 2.0 * np.pi * point.speed_Hz

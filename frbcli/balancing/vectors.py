@@ -87,7 +87,7 @@ def _at(track: OrderTrack, speed: float) -> tuple[Complex, Array]:
     nearest = int(np.argmin(np.abs(speeds - speed)))
     if abs(speeds[nearest] - speed) > NEAR * speed:
         problem = f"is not reached; the run goes from {speeds.min():.4g} to {speeds.max():.4g} Hz."
-        raise input_error("balance", "speed", f"{speed:.6g} Hz", problem, "Choose another speed, by --at.")
+        raise input_error("balance", "speed", f"{speed:.6g} Hz", problem, "Choose another speed, by --speed.")
     values = np.stack([track.along("x"), track.along("y")], axis=-1)
     near = np.flatnonzero(np.abs(speeds - speeds[nearest]) <= SAME * speed)
     if len(near) > HELD * track.revolutions * STEPS:

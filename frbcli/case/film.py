@@ -57,8 +57,8 @@ def attribute(of: type[Law]) -> str:
 
 
 def adopt(film: type[Model], others: Iterable[type[Model]] = ()) -> None:
-    """Give the model of [film] the table of every law that has keys and of no other, and its `cavitation` and that of
-    `others` the names of all laws. Models that hold one of these have to be rebuilt by the caller."""
+    """Give the model of [film] the table of every law that has keys and of no other, and its `cavitation` and that
+    in `others` the names of all laws. Models that hold one of these have to be rebuilt by the caller."""
     fields = film.model_fields
     for name in [name for name, field in fields.items() if isinstance(field.default, FilmTable)]:
         del fields[name]

@@ -2,7 +2,7 @@
 
 A command is written as
 
-    @click.command()
+    @click.command(cls=Command)
     @case_argument
     @output_options
     def command(case: Case, terminal: Terminal) -> int | None: ...
@@ -60,7 +60,7 @@ class Terminal:
     """Where a command speaks.
 
     Results, with their limits and files, go to stdout. Remarks, which are progress and advice, go to stderr. With json
-    stdout holds one JSON document alone, and results as text go to stderr; with quiet there is no text.
+    stdout holds one JSON document instead of the results; with quiet there is no text.
     """
 
     json: bool = False
@@ -84,8 +84,8 @@ class Terminal:
 
     def result(self, text: str = "") -> None:
         """Print a part of the results, without control characters other than new lines."""
-        if not self.quiet:
-            _write(self._results, f"{printable(text)}\n")
+        if not self.silent:
+            _write(sys.stdout, f"{printable(text)}\n")
 
     def sentence(self, text: str) -> None:
         """Print sentences, a part of the results, in lines of WIDTH columns."""
@@ -102,14 +102,14 @@ class Terminal:
         """Print a table, a part of the results, without a head where no column has a name; several, which repeat the
         first column, where one would be too wide for its words. rows: as many cells as columns each, shown by str();
         spans: numbers of columns, one after another, that stay in one table."""
-        if self.quiet:
+        if self.silent:
             return
         from rich import box
         from rich.table import Table
         from rich.text import Text
 
         cells = [[printable(str(cell)) for cell in row] for row in rows]
-        console = _console(self._results)
+        console = _console(sys.stdout)
         for kept in _parts(columns, cells, console.width, spans or (1,) * len(columns)):
             named, shown = [columns[k] for k in kept], [[row[k] for k in kept] for row in cells]
             table = Table(title=title or None, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD)
@@ -139,8 +139,9 @@ class Terminal:
             _write(sys.stdout, "".join(map(_as_json, text)) + "\n")
 
     @property
-    def _results(self) -> TextIO:
-        return sys.stderr if self.json else sys.stdout
+    def silent(self) -> bool:
+        """Whether results are not printed as text."""
+        return self.quiet or self.json
 
 
 def wrapped(text: str) -> str:

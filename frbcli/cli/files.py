@@ -47,10 +47,18 @@ class InputFiles(click.ParamType[tuple[Path, ...]]):
 
 
 class OutputFile(click.Path):
-    """A file that the command writes, as a Path."""
+    """A file that the command writes, as a Path. suffix: the end of its name; "" for any."""
 
-    def __init__(self) -> None:
+    def __init__(self, suffix: str = "") -> None:
         super().__init__(path_type=Path)
+        self.suffix = suffix
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The path. Fails the option for a name with another end."""
+        path = super().convert(value, param, ctx)
+        if self.suffix and Path(os.fsdecode(path)).suffix.lower() != self.suffix:
+            self.fail(f"{os.fsdecode(path)!r} has to end with {self.suffix}.", param, ctx)
+        return path
 
 
 class OutputFolder(OutputFile):
@@ -58,6 +66,7 @@ class OutputFolder(OutputFile):
 
 
 INPUT, INPUTS, OUTPUT, OUTPUT_FOLDER = InputFile(), InputFiles(), OutputFile(), OutputFolder()
+CASE_FILE, RUN_FILE, PAGE_FILE, CSV_FILE = map(OutputFile, (".toml", ".h5", ".html", ".csv"))
 
 
 def note_read(path: Path, context: click.Context | None) -> None:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import errno
 import importlib
-import io
 import os
 import sys
 from collections.abc import Sequence
@@ -18,7 +17,7 @@ import click
 
 from frbcli import __version__
 from frbcli.cli.process import require_memory, reserve, shortage
-from frbcli.errors import INTERRUPTED, Fault, FrbError, InputError, NotConverged, input_error, printable
+from frbcli.errors import INTERRUPTED, FrbError, InputError, NotConverged, input_error, printable
 
 # name: (module of the command, with its name there where a module has several; one line of help; an example);
 # the module is imported when its command is called
@@ -128,6 +127,11 @@ COMMANDS = {
         "Compile the kernels of cases, or of all shipped ones, once.",
         "frb warm-up jeffcott floating-ring-heat",
     ),
+    "docs": (
+        "frbcli.cli.casefiles.docs",
+        "Open the documentation that is installed with frb.",
+        "frb docs tutorial",
+    ),
     "cases": ("frbcli.cli.casefiles.cases", "List, show or copy the shipped cases.", "frb cases jeffcott -o my.toml"),
     "schema": (
         "frbcli.cli.casefiles.schema",
@@ -139,17 +143,16 @@ COMMANDS = {
 # The commands in the order of an engineer's work, as `frb --help` shows them
 GROUPS = {
     "Describe a machine": ("cases", "check", "schema"),
-    "Run": ("runup", "rundown", "warm-up"),
-    "Look at a run": ("waterfall", "plot", "report"),
-    "Study a machine": (
-        "bearing", "thrust", "stability", "response", "balance", "limit-cycles", "sweep", "compare", "accuracy",
-    ),
-    "Test a bearing": ("rotation", "squeeze", "whirl"),
-    "Exchange data": ("fit", "export"),
+    "Run": ("runup", "rundown"),
+    "Look at a run": ("waterfall", "plot", "report", "export"),
+    "Study a machine": ("stability", "response", "limit-cycles", "compare", "sweep", "accuracy"),
+    "Study a bearing": ("bearing", "thrust", "rotation", "squeeze", "whirl"),
+    "Use a measurement": ("fit", "balance"),
+    "Help": ("docs", "warm-up"),
 }
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # a disk
 NO_CASE = "It changes a CASE before it is computed, and this command takes none: `frb runup CASE --set KEY=VALUE`."
-LIGHT = ("cases", "schema")  # compute nothing
+LIGHT = ("cases", "schema", "docs")  # compute nothing
 
 
 def command_named(name: str) -> click.Command:
@@ -222,11 +225,7 @@ def run(arguments: Sequence[str]) -> int:
     except click.ClickException as wrong_usage:
         if isinstance(wrong_usage, click.NoSuchOption) and wrong_usage.option_name == "--set":
             wrong_usage = click.UsageError(f"{wrong_usage.format_message()} {NO_CASE}", wrong_usage.ctx)
-        message = io.StringIO()
-        wrong_usage.show(message)
-        _show(message.getvalue().rstrip("\n"))
-        _emit_error(arguments, InputError("command line", (_usage_fault(wrong_usage),)))
-        return wrong_usage.exit_code if isinstance(wrong_usage, click.UsageError) else InputError.exit_code
+        return _show_error(arguments, _usage_error(wrong_usage))
     except FrbError as error:
         return _show_error(arguments, error)
     except Exception as error:
@@ -267,10 +266,10 @@ def _show_error(arguments: Sequence[str], error: FrbError) -> int:
     return error.exit_code
 
 
-def _usage_fault(error: click.ClickException) -> Fault:
+def _usage_error(error: click.ClickException) -> InputError:
     context = getattr(error, "ctx", None)
     path = "frb" if context is None else context.command_path
-    return Fault("command line", "", None, error.format_message(), f"See `{path} --help`.")
+    return input_error("command line", path, "", error.format_message(), f"See `{path} --help`.")
 
 
 def _emit_error(arguments: Sequence[str], error: FrbError) -> None:

@@ -18,8 +18,34 @@ if TYPE_CHECKING:
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
+# Options that many commands share, by the head under which a help lists them below the options of the command itself.
+SECTIONS = {
+    "Measurement": ("--x", "--y", "--time", "--rate", "--speed-column", "--speed-time", "--speed-at", "--tacho",
+                    "--pulses", "--slow-roll", "--unit", "--time-unit", "--speed-unit", "--clearance"),
+    "Picture": ("--picture", "--size", "--dpi", "--xlim", "--ylim", "--rpm"),
+    "Output": ("--csv", "--force", "--json", "--quiet", "--help"),
+}  # fmt: skip
+
+
+class Command(click.Command):
+    """A command whose help lists its own options first, then those of SECTIONS."""
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the options, section by section."""
+        sections: dict[str, list[tuple[str, str]]] = {name: [] for name in ("Options", *SECTIONS)}
+        for param in self.get_params(ctx):
+            row = param.get_help_record(ctx) if isinstance(param, click.Option) else None
+            if row is not None:
+                own = (name for name, shared in SECTIONS.items() if param.opts[-1] in shared)
+                sections[next(own, "Options")].append(row)
+        for name, rows in sections.items():
+            if rows:
+                with formatter.section(name):
+                    formatter.write_dl(rows)
+
 PER_MINUTE = "frbcli.per_minute"  # of the context: whether an option gives a speed in rpm
 _LOOK = "frbcli.look"
+NUMBER = "0123456789.eE+-"  # letters of one
 INCH = 0.0254  # m
 DPI = 150
 COMMON = ("rotor.unbalance", "bearing.clearance", "oil.viscosity", "film.theory", "film.cavitation", "speed.from",
@@ -62,6 +88,14 @@ class UnitOption(QuantityOption):
         return super().convert(f"1 {text}" if text[:1].isalpha() or text.startswith("1/") else value, param, ctx)
 
 
+def range_ends(text: str) -> tuple[str, str] | None:
+    """The ends of a range such as "30..45 um": a unit at the end holds for both. None for no range."""
+    low, _, high = (part.strip() for part in text.partition(".."))
+    if not low or not high:
+        return None
+    return (f"{low} {high.lstrip(NUMBER)}".strip() if not low.lstrip(NUMBER) else low), high
+
+
 @dataclass(frozen=True)
 class RangeOption(QuantityOption):
     """Two quantities, as "8000..12000 rpm": a unit at the end holds for both."""
@@ -70,12 +104,10 @@ class RangeOption(QuantityOption):
         """The lower and the upper one in `unit`."""
         if isinstance(value, tuple):
             return value
-        low, dots, high = str(value).partition("..")
-        if not dots:
+        texts = range_ends(str(value))
+        if texts is None:
             self.fail(f'{value!r} is no range. Write e.g. "{self.example}".', param, ctx)
-        unit = high.strip().lstrip("0123456789.eE+-")
-        bare = low.strip().lstrip("0123456789.eE+-") == ""
-        ends = [super(RangeOption, self).convert(end, param, ctx) for end in (low + unit if bare else low, high)]
+        ends = [super(RangeOption, self).convert(end, param, ctx) for end in texts]
         if ends[0] > ends[1]:
             self.fail(f'{value!r} does not ascend. Write e.g. "{self.example}".', param, ctx)
         return ends[0], ends[1]
@@ -88,6 +120,31 @@ class SupportOption(QuantityOption):
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The word, or the stiffness in `unit`."""
         return value if value in ("free", "bearings") else super().convert(value, param, ctx)
+
+
+@dataclass(frozen=True)
+class KeyRange:
+    """A number of a case, from a value to another one, as texts with units."""
+
+    key: str
+    low: str
+    high: str
+
+
+class KeyRangeOption(click.ParamType[KeyRange]):
+    """A key and its range, as bearing.clearance=30..45 um."""
+
+    name = "range"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> KeyRange:
+        """Key and range. Fails the option for anything else."""
+        if isinstance(value, KeyRange):
+            return value
+        key, _, span = str(value).partition("=")
+        ends = range_ends(span)
+        if not key.strip() or ends is None:
+            self.fail(f"{value!r} is no range of a key. Write e.g. bearing.clearance='30..45 um'.", param, ctx)
+        return KeyRange(key.strip(), *ends)
 
 
 class GradeOption(click.ParamType[float]):
@@ -105,6 +162,7 @@ class GradeOption(click.ParamType[float]):
             self.fail(f"{value!r} {fault}", param, ctx)
 
 
+KEY_RANGE = KeyRangeOption()
 OPERATING_OPTION = RangeOption("range", "Hz", "8000..12000 rpm")
 SPEED_OPTION = QuantityOption("speed", "Hz", "25 Hz")
 REST_OPTION = QuantityOption("speed", "Hz", "25 Hz", positive=False)
@@ -140,37 +198,55 @@ class Numbers(click.ParamType[tuple[float, ...]]):
             self.fail(f"{value} is not a list of numbers, such as 1,0.5.", param, ctx)
 
 
-def _models(name: str, what: str, default: str = "as in CASE") -> Callable[[Function], Function]:
-    return click.option(name, type=Names(), default=(), metavar="A,B", help=f"{what}, separated by commas. [{default}]")
+def _models(name: str, what: str, of: str, default: str = "as in CASE") -> Callable[[Function], Function]:
+    """of: the names that the case file knows; written here, for a help that imports none of them."""
+    return click.option(name, type=Names(), default=(), metavar="A,B", show_default=default, help=f"{what}: {of}.")
 
 
-cavitation_option = _models("--cavitation", "Cavitation models")
-coupling_option = _models("--coupling", "Couplings of rotor and films")
-thermal_option = _models("--thermal", "Models of heat, none or lumped")
+cavitation_option = _models(
+    "--cavitation", "Cavitation models",
+    "sommerfeld, half-sommerfeld, reynolds, penalty, peeken, barotropic, elrod, two-phase, bubbly",
+)  # fmt: skip
+coupling_option = _models(
+    "--coupling", "Couplings of rotor and films",
+    "auto, monolithic, dynamic-static, dynamic-static-semi-implicit, co-simulation",
+)  # fmt: skip
+thermal_option = _models("--thermal", "Models of heat", "none, lumped")
 
 
 def theory_option(default: str) -> Callable[[Function], Function]:
     """Give a command the option --theory."""
-    return _models("--theory", "Film theories", default)
+    return _models("--theory", "Film theories", "short, finite, auto", default)
 
 
 def speeds_option(default: str, kind: QuantityOption = SPEED_OPTION) -> Callable[[Function], Function]:
     """Give a command the option --speed, which may be repeated; default: the speeds without it, for the help."""
-    words = f'Rotor speed, e.g. "25 Hz". Repeatable. [{default}]'
-    return click.option("--speed", "speeds", multiple=True, type=kind, metavar="SPEED", help=words)
+    return click.option("--speed", "speeds", multiple=True, type=kind, metavar="SPEED", show_default=default,
+                        help='Rotor speed, e.g. "25 Hz". Repeatable.')  # fmt: skip
+
+
+def _name(_: click.Context, __: click.Parameter, name: str | None) -> str | None:
+    """A name of the results, in which tables and pictures show spaces."""
+    return None if name is None else name.strip().replace(" ", "_")
 
 
 def signal_option(default: str | None = "journal") -> Callable[[Function], Function]:
     """Give a command the option --signal, a point of the rotor."""
     words = "Point of the machine: journal, disk or support; NAME of a bearing or disk."
-    return click.option("--signal", default=default, show_default=default is not None, metavar="POINT", help=words)
+    return click.option("--signal", default=default, show_default=default is not None, metavar="POINT", callback=_name,
+                        help=words)  # fmt: skip
+
+
+def film_option(words: str, default: str) -> Callable[[Function], Function]:
+    """Give a command the option --film, the name of a film."""
+    return click.option("--film", metavar="FILM", callback=_name, show_default=default, help=words)
 
 
 def over_option(default: str | None) -> Callable[[Function], Function]:
     """Give a command the option --over, the axis of a picture."""
-    words = "Horizontal axis." if default else "Horizontal axis. [speed where it rises or falls all the time]"
-    return click.option("--over", type=click.Choice(["time", "speed"]), default=default,
-                        show_default=default is not None, help=words)  # fmt: skip
+    shown = default or "speed where it rises or falls all the time"
+    return click.option("--over", type=click.Choice(["time", "speed"]), default=default, show_default=shown,
+                        help="Horizontal axis.")  # fmt: skip
 
 
 def gathered(name: str, record: type) -> Callable[[Function], Function]:
@@ -282,10 +358,11 @@ def look_options(function: Function) -> Function:
     """Give a command --size, --dpi, --xlim, --ylim and --rpm; its terminal knows them."""
     options = (
         _option("--size", "size_in", type=Size(), metavar="SIZE", help='Size of the picture, e.g. "160 mm x 90 mm".'),
-        _option("--dpi", "dpi", type=click.IntRange(30, 1200), metavar="N", help=f"Resolution of a PNG. [{DPI}]"),
+        _option("--dpi", "dpi", type=click.IntRange(30, 1200), metavar="N", default=DPI, show_default=True,
+                help="Resolution of a PNG."),
         _option("--xlim", "x_limits", type=Span(), metavar="A,B", help="Limits of the horizontal axis."),
         _option("--ylim", "y_limits", type=Span(), metavar="A,B", help="Limits of the vertical axis."),
-        _option("--rpm", "rpm", is_flag=True, help="Rotor speeds in rpm. [as the case gives them]"),
+        _option("--rpm", "rpm", is_flag=True, show_default="as the case gives them", help="Rotor speeds in rpm."),
     )
     for option in reversed(options):
         function = option(function)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TypeVar
 import click
 
 from frbcli.cli.common import Terminal
-from frbcli.cli.files import OUTPUT, check_outputs, force_option, forced
+from frbcli.cli.files import CSV_FILE, OUTPUT, check_outputs, force_option, forced
 from frbcli.cli.options import gathered, look_options
 from frbcli.cli.progress import drawing
 from frbcli.errors import InputError
@@ -80,21 +80,20 @@ class OutputOptions:
 
 def picture_option(default: str) -> Callable[[Function], Function]:
     """Give a command the option -o, the file of its picture; default: its name, for the help."""
-    words = f"Picture as PNG, PDF or SVG. [{default}]"
-    return click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help=words)
+    words = "Picture as PNG, PDF or SVG."
+    return click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, show_default=default, help=words)
 
 
-picture_switch = click.option("--picture/--no-picture", default=True, help="Draw a picture or not. [it is drawn]")
+picture_switch = click.option("--picture/--no-picture", default=True, show_default=True, help="Draw a picture or not.")
+csv_option = click.option("--csv", metavar="FILE.csv", type=CSV_FILE, help="Write the table of all results, too.")
 
 
 def outputs_options(default: str) -> Callable[[Function], Function]:
     """Give a command -o, --picture, --csv, --force and the options of the look; it receives `outputs`, which are
     OutputOptions."""
-    csv = click.option("--csv", metavar="FILE", type=OUTPUT, help="Write the table of all results as CSV, too.")
-
     def decorated(function: Function) -> Function:
         gathering = gathered("outputs", OutputOptions)(function)
-        return picture_option(default)(picture_switch(csv(force_option()(look_options(gathering)))))
+        return picture_option(default)(picture_switch(csv_option(force_option()(look_options(gathering)))))
 
     return decorated
 

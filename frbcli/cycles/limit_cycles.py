@@ -104,7 +104,7 @@ def value_range(case: Case, key: str, low: str, high: str) -> tuple[float, float
         raise InputError(case.name or "case", (fault,))
     (first, unit), (last, other) = _number(key, low), _number(key, high)
     if unit != other or not first < last:
-        problem, remedy = "is no range of one unit.", f'Write e.g. --from "40 um" --to "90 um", not {low} to {high}.'
+        problem, remedy = "is no range of one unit.", f"Write e.g. {key}='40..90 um', not {low}..{high}."
         raise input_error(case.name or "case", key, f"{low} to {high}", problem, remedy)
     return first, last, unit
 

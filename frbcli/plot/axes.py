@@ -1,13 +1,22 @@
 """Pictures on given axes: every function takes `ax`, draws on it and returns it; without `ax` it makes a new figure.
 
     figure, (left, right) = pyplot.subplots(1, 2)
-    frbcli.draw_orbit(run, ax=left)
+    frbcli.draw_orbit(run, ax=left, label="35 um")
+    frbcli.draw_orbit(other, ax=left, label="40 um")
     frbcli.draw_waterfall(run, ax=right)
+
+What is drawn over other curves has colours of its own, and `label` begins its names in the legend.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any, cast
+
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
+from matplotlib.lines import Line2D
 
 from frbcli.analysis.spectrum import Direction
 from frbcli.linear.response import Response
@@ -21,14 +30,17 @@ from frbcli.plot.run.motion import LAST_s, draw_eccentricity, draw_orbits
 from frbcli.plot.run.quantities import draw_quantity
 from frbcli.plot.run.speeds import draw_spectrum_at
 from frbcli.plot.signals import ends
-from frbcli.plot.style import NotebookFigure, legend_beside, styled
+from frbcli.plot.style import BLACK, COLOURS, NotebookFigure, legend_beside, styled
 from frbcli.plot.waterfall import DECIBELS, LevelScale, draw_levels, run_spectra
 from frbcli.results.store import Run
 
+PALETTE = [to_hex(colour) for colour in COLOURS if colour != BLACK]  # of curves, not of what is around them
+
 
 def eccentricity(
-    run: Run, ax: Axes | None = None, from_time: float | None = None, to_time: float | None = None, over: Over = "time"
-) -> Axes:
+    run: Run, ax: Axes | None = None, from_time: float | None = None, to_time: float | None = None,
+    over: Over = "time", label: str = "",
+) -> Axes:  # fmt: skip
     """Draw the relative eccentricity of all films over time or rotor speed.
 
     Parameters
@@ -41,6 +53,8 @@ def eccentricity(
         Begin and end in s; by default of the whole run.
     over : {"time", "speed"}
         The axis.
+    label : str
+        Begins the names of the curves in the legend, for several runs on the same axes.
 
     Returns
     -------
@@ -59,20 +73,22 @@ def eccentricity(
     >>> ax = frbcli.draw_eccentricity(run)  # doctest: +SKIP
     """
     ax = _axes(ax)
-    draw_eccentricity(ax, [run], (), (from_time, to_time), over)
+    with _overlaid(ax, label):
+        draw_eccentricity(ax, [run], (), (from_time, to_time), over)
     finish(ax, over)
     legend_beside(ax)
     return ax
 
 
 def orbit(
-    run: Run, ax: Axes | None = None, bearing: str = "", from_time: float | None = None, to_time: float | None = None
-) -> Axes:
+    run: Run, ax: Axes | None = None, bearing: str = "", from_time: float | None = None,
+    to_time: float | None = None, label: str = "",
+) -> Axes:  # fmt: skip
     """Draw the orbit of the journal of a bearing in its clearance.
 
     Parameters
     ----------
-    run, ax : as of `draw_eccentricity`
+    run, ax, label : as of `draw_eccentricity`
     bearing : str
         Name of the bearing; by default the first.
     from_time, to_time : float, optional
@@ -96,7 +112,9 @@ def orbit(
     """
     ax = _axes(ax)
     end = ends(run)[1] if to_time is None else to_time
-    draw_orbits(ax, [run], bearing, (max(end - LAST_s, 0.0) if from_time is None else from_time, end))
+    with _overlaid(ax, label):
+        draw_orbits(ax, [run], bearing, (max(end - LAST_s, 0.0) if from_time is None else from_time, end))
+    legend_beside(ax)
     return ax
 
 
@@ -140,13 +158,14 @@ def waterfall(
 
 
 def spectrum(
-    run: Run, time_s: float, ax: Axes | None = None, signal: str = "journal", window_s: float | None = None
-) -> Axes:
+    run: Run, time_s: float, ax: Axes | None = None, signal: str = "journal", window_s: float | None = None,
+    label: str = "",
+) -> Axes:  # fmt: skip
     """Draw the peak amplitudes of x of a point over frequency, about a time.
 
     Parameters
     ----------
-    run, ax : as of `draw_eccentricity`
+    run, ax, label : as of `draw_eccentricity`
     time_s : float
         The time in s.
     signal : str
@@ -171,16 +190,18 @@ def spectrum(
     >>> ax = frbcli.draw_spectrum(run, 2.0)  # doctest: +SKIP
     """
     ax = _axes(ax)
-    draw_spectrum_at(ax, run, time_s, run_spectra(run, signal, window_s, "x"), signal)
+    with _overlaid(ax, label):
+        draw_spectrum_at(ax, run, time_s, run_spectra(run, signal, window_s, "x"), signal)
+    legend_beside(ax)
     return ax
 
 
-def ring_speed(run: Run, ax: Axes | None = None, over: Over = "time") -> Axes:
+def ring_speed(run: Run, ax: Axes | None = None, over: Over = "time", label: str = "") -> Axes:
     """Draw the speeds of all floating rings in Hz over time or rotor speed.
 
     Parameters
     ----------
-    run, ax, over : as of `draw_eccentricity`
+    run, ax, over, label : as of `draw_eccentricity`
 
     Returns
     -------
@@ -200,19 +221,23 @@ def ring_speed(run: Run, ax: Axes | None = None, over: Over = "time") -> Axes:
     """
     ax = _axes(ax)
     names = [name for name in run.signals if name.startswith("ring_speed")]
-    draw_curves(ax, [run], [(name.removesuffix("_Hz"), [run.signal(name)]) for name in names], over, (None, None))
+    curves = [(name.removesuffix("_Hz").replace("_", " "), [run.signal(name)]) for name in names]
+    with _overlaid(ax, label):
+        draw_curves(ax, [run], curves, over, (None, None))
     ax.set_ylabel("ring speed in Hz")
     finish(ax, over)
     legend_beside(ax)
     return ax
 
 
-def film_signal(run: Run, kind: str, ax: Axes | None = None, part: int = 0, over: Over = "time") -> Axes:
+def film_signal(
+    run: Run, kind: str, ax: Axes | None = None, part: int = 0, over: Over = "time", label: str = ""
+) -> Axes:
     """Draw a signal of the films that a run has recorded, most of them by `output.signals`.
 
     Parameters
     ----------
-    run, ax, over : as of `draw_eccentricity`
+    run, ax, over, label : as of `draw_eccentricity`
     kind : str
         "force", "film-thickness", "power", "torque", "oil-flow", "tilt" or "supply-pressure".
     part : int
@@ -235,20 +260,21 @@ def film_signal(run: Run, kind: str, ax: Axes | None = None, part: int = 0, over
     >>> ax = frbcli.draw_film_signal(run, "power")  # doctest: +SKIP
     """
     ax = _axes(ax)
-    draw_quantity(ax, [run], kind, part, over)
+    with _overlaid(ax, label):
+        draw_quantity(ax, [run], kind, part, over)
     finish(ax, over)
     legend_beside(ax)
     return ax
 
 
-def campbell(analysis: Stability, ax: Axes | None = None) -> Axes:
+def campbell(analysis: Stability, ax: Axes | None = None, label: str = "") -> Axes:
     """Draw damped eigenfrequencies in Hz over the rotor speed; filled dots grow.
 
     Parameters
     ----------
     analysis : Stability
         See `stability`.
-    ax : as of `draw_eccentricity`
+    ax, label : as of `draw_eccentricity`
 
     Returns
     -------
@@ -262,20 +288,21 @@ def campbell(analysis: Stability, ax: Axes | None = None) -> Axes:
     >>> ax = frbcli.draw_campbell(frbcli.stability(case))  # doctest: +SKIP
     """
     ax = _axes(ax)
-    draw_frequencies(ax, [point for point in analysis.sweep if point.rests])
+    with _overlaid(ax, label):
+        draw_frequencies(ax, [point for point in analysis.sweep if point.rests])
     ax.set_xlabel("rotor speed in Hz")
     legend_beside(ax)
     return ax
 
 
-def response(motion: Response, ax: Axes | None = None) -> Axes:
+def response(motion: Response, ax: Axes | None = None, label: str = "") -> Axes:
     """Draw the amplitudes of all points over the rotor speed, dotted where a whirl grows.
 
     Parameters
     ----------
     motion : Response
         See `response`.
-    ax : as of `draw_eccentricity`
+    ax, label : as of `draw_eccentricity`
 
     Returns
     -------
@@ -289,12 +316,15 @@ def response(motion: Response, ax: Axes | None = None) -> Axes:
     >>> ax = frbcli.draw_response(frbcli.response(case))  # doctest: +SKIP
     """
     ax = _axes(ax)
-    draw_amplitude(ax, motion)
+    with _overlaid(ax, label):
+        draw_amplitude(ax, motion)
     legend_beside(ax)
     return ax
 
 
-def bearing(sheet: BearingSheet, quantity: str = "stiffness", ax: Axes | None = None) -> Axes:
+def bearing(
+    sheet: BearingSheet, quantity: str = "stiffness", ax: Axes | None = None, label: str = ""
+) -> Axes:
     """Draw stiffness or damping of the films over rotor speed or eccentricity.
 
     Parameters
@@ -303,7 +333,7 @@ def bearing(sheet: BearingSheet, quantity: str = "stiffness", ax: Axes | None = 
         See `bearing_sheet` and `sommerfeld_chart`.
     quantity : {"stiffness", "damping"}
         In N/m or N s/m.
-    ax : as of `draw_eccentricity`
+    ax, label : as of `draw_eccentricity`
 
     Returns
     -------
@@ -317,10 +347,37 @@ def bearing(sheet: BearingSheet, quantity: str = "stiffness", ax: Axes | None = 
     >>> ax = frbcli.draw_bearing(frbcli.bearing_sheet(case))  # doctest: +SKIP
     """
     ax = _axes(ax)
-    draw_coefficient(ax, sheet, quantity)
+    with _overlaid(ax, label):
+        draw_coefficient(ax, sheet, quantity)
     ax.set_xlabel("eccentricity" if sheet.over == ECCENTRICITY else "rotor speed in Hz")
     legend_beside(ax)
     return ax
+
+
+@contextmanager
+def _overlaid(ax: Axes, label: str) -> Iterator[None]:
+    """What is drawn within it has the colours that follow those of the curves before, and names that begin so."""
+    lines, areas = list(ax.lines), list(ax.collections)
+    yield
+    drawn = [line for line in ax.lines if line not in lines]
+    filled = [area for area in ax.collections if area not in areas]
+    both: list[Any] = [*drawn, *filled]
+    named = [each for each in both if not str(each.get_label()).startswith("_")]
+    for each in named or (drawn[:1] if label else []):
+        name = str(each.get_label())
+        each.set_label(label if name.startswith("_") else ", ".join(filter(None, (label, name))))
+    before, own = ([colour for colour in PALETTE if colour in map(_colour, each)] for each in (lines, drawn))
+    changed = {colour: PALETTE[(len(before) + number) % len(PALETTE)] for number, colour in enumerate(own)}
+    if before:
+        for line in drawn:
+            line.set_color(changed.get(_colour(line), _colour(line)))
+        for area in filled:
+            for colour in {to_hex(cast("Any", face)) for face in area.get_facecolor()} & set(changed):
+                area.set_facecolor(changed[colour])
+
+
+def _colour(line: Line2D) -> str:
+    return str(to_hex(cast("Any", line.get_color())))
 
 
 def _axes(ax: Axes | None) -> Axes:

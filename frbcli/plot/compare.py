@@ -155,7 +155,7 @@ def fit_figure(found: Fit) -> Figure:
 def against_figure(found: AgainstMeasured) -> Figure:
     """Both waterfalls over the rotor speed in one scale, and below them the ridges over each other."""
     with styled():
-        figure = new_figure(found.run.title, f"beside {found.measurement.path.name}", 9.0, 9.0)
+        figure = new_figure(found.run.title, f"compared with {found.measurement.path.name}", 9.0, 9.0)
         grid = figure.add_gridspec(4, 2, height_ratios=(2.2, 1.0, 1.0, 1.0))
         maps = [figure.add_subplot(grid[0, column]) for column in range(2)]
         for axes, run, name in zip(maps, (found.run, found.measurement), ("computed", "measured"), strict=True):

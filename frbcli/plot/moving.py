@@ -240,6 +240,7 @@ def _panels(run: Run, kept: KeptFilm, rows: int) -> tuple[Figure, Axes, Any]:
         bar = parts[1].colorbar(image, ax=maps[:, column], location="bottom", shrink=0.8, aspect=35,
                                 ticks=MaxNLocator(TICKS))  # fmt: skip
         bar.set_label(label, fontsize=8.0)
+        maps[0, column].set_title(label.partition(",")[0], loc="right", fontsize=8.0)
         bar.outline.set_visible(False)
         maps[-1, column].set_xlabel("φ in °, white: smallest gap; z from 0 to 1 along the section", fontsize=8.0)
     return figure, parts[0].subplots(), maps
@@ -260,6 +261,7 @@ def _draw_course(axes: Axes, run: Run, kept: KeptFilm, first: int, last: int) ->
     axes.set_xlim(times[0], times[-1])
     axes.set_ylim(0.0, 1.05)
     axes.set_xlabel("time in s", fontsize=8.0)
+    axes.set_ylabel("eccentricity,\noil fraction", fontsize=8.0)
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize="small")
 
 

@@ -7,7 +7,7 @@ A finished picture in another size, with other limits, or with its rotor speeds 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
 from typing import Any
 
@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from frbcli.errors import input_error
-from frbcli.plot.style import Picture
+from frbcli.plot.style import Picture, new_figure, styled, wrap_title
 
 PICTURES = {  # class of a result: module in this room, and its function
     "AccuracyLadder": "accuracy:accuracy_figure",
@@ -39,6 +39,12 @@ PICTURES = {  # class of a result: module in this room, and its function
     "Sweep": "sweep:sweep_figure",
     "ThrustSheet": "machine.thrust:thrust_figure",
 }
+OVERLAYS = {  # of several results over each other
+    "BearingSheet": "axes:bearing",
+    "Response": "axes:response",
+    "Run": "axes:eccentricity",
+    "Stability": "axes:campbell",
+}
 
 
 def picture(result: object) -> Picture:
@@ -46,10 +52,11 @@ def picture(result: object) -> Picture:
 
     Parameters
     ----------
-    result : object
+    result : object, or list of objects
         A run, or what a function of `frbcli` returned: `stability`, `response`, `bearing_sheet`, `ball_bearing_sheet`,
         `critical_map`, `natural_modes`, `damped_modes`, `limit_cycles`, `stability_map`, `rotation`, `squeeze`,
-        `whirl`, `compare`, `against_measured`, `accuracy`, `fit`, `sweep`.
+        `whirl`, `compare`, `against_measured`, `accuracy`, `fit`, `sweep`. Several runs, or several results of
+        `stability`, `response` or `bearing_sheet`, are drawn over each other.
 
     Returns
     -------
@@ -69,14 +76,36 @@ def picture(result: object) -> Picture:
     >>> len(figure.axes)
     2
     """
+    if not isinstance(result, list | tuple):
+        figure: Picture = _drawn_by(result, PICTURES)(result)
+        return figure
+    draw = _drawn_by(result[0], OVERLAYS) if result else None
+    if draw is None or len({type(each) for each in result}) > 1:
+        raise input_error("picture", "result", "", "are not results of one kind.", "Draw them one by one.")
+    return overlaid(draw, result)
+
+
+def overlaid(draw: Callable[..., Axes], results: Sequence[Any]) -> Picture:
+    """Results over each other, by a function that draws one on axes; they are named by their cases, or numbered."""
+    cases = [getattr(each, "case_name", "") or each.case.name for each in results]
+    names = cases if len(set(cases)) == len(cases) else [f"{name} {n}" for n, name in enumerate(cases, start=1)]
+    with styled():
+        figure = new_figure("Comparison", ", ".join(dict.fromkeys(cases)))
+        axes = figure.subplots()
+        for each, name in zip(results, names, strict=True):
+            draw(each, ax=axes, label=name)
+    return figure
+
+
+def _drawn_by(result: object, table: dict[str, str]) -> Any:
+    """The function of a table that draws a result. Raises InputError if there is none."""
     kinds = (kind.__name__ for kind in type(result).__mro__ if kind.__module__.startswith("frbcli."))
-    place = next((PICTURES[kind] for kind in kinds if kind in PICTURES), None)
+    place = next((table[kind] for kind in kinds if kind in table), None)
     if place is None:
-        problem, remedy = "has no picture.", f"There are pictures of: {', '.join(PICTURES)}."
+        problem, remedy = "has no picture.", f"There are pictures of: {', '.join(table)}."
         raise input_error("picture", type(result).__name__, "", problem, remedy)
     module, _, name = place.partition(":")
-    figure: Picture = getattr(import_module(f"frbcli.plot.{module}"), name)(result)
-    return figure
+    return getattr(import_module(f"frbcli.plot.{module}"), name)
 
 
 SECONDS = 60.0  # of a minute
@@ -119,6 +148,7 @@ def fit(
                 axes.set_ylim(*_in_hertz(axes.yaxis, y_limits))
     if size_in is not None:
         figure.set_size_inches(*size_in)
+        wrap_title(figure)
     return figure
 
 

@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from textwrap import fill
 from typing import Any
 
 import matplotlib as mpl
@@ -42,6 +43,7 @@ FORMATS = {
 }  # no dates, so that the same run gives the same file
 
 SYMBOL = re.compile(r"(?<!\w)([^\W\d_])_([^\W_]{1,2})(?!\w)")  # with its index
+LETTERS_PER_INCH, FEWEST_LETTERS = 12.5, 20  # of a title
 LEGEND_ROW, FEW_COLUMNS = 0.2, 3  # inches; columns of a legend, of more the letters are smaller
 LABEL_ROWS, LABEL_HEIGHT_pt, LABEL_GAP_pt = 3, 24, 6  # of labels above a panel
 POINTS = 72.0  # of an inch
@@ -96,6 +98,14 @@ def set_title(figure: Figure, title: str, subtitle: str) -> None:
     """Title and subtitle of a figure, above its panels."""
     words = with_subscripts(plain(title))
     figure.suptitle(f"{words}\n{plain(subtitle)}" if subtitle else words, x=0.01, ha="left", fontsize=10.0)
+    wrap_title(figure)
+
+
+def wrap_title(figure: Figure) -> None:
+    """Break the lines of the title that are longer than the picture is wide."""
+    width = max(FEWEST_LETTERS, int(LETTERS_PER_INCH * figure.get_figwidth()))
+    lines = (fill(line, width, break_long_words=False) for line in figure.get_suptitle().split("\n"))
+    figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=10.0)
 
 
 def plain(text: str) -> str:

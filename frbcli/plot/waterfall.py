@@ -17,6 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.text import Annotation
 from matplotlib.ticker import LogLocator, MaxNLocator, ScalarFormatter
 from numpy.typing import NDArray
 
@@ -69,7 +70,7 @@ MOST_VALUES = 3e6  # of a map of levels
 TURNING = 1e-3  # share of the highest speed per window that is a change of speed
 FEWEST_COLUMNS, COLUMNS = 50, 2000  # spectra: the latter are more than a picture has columns of pixels
 SAME_LINE = 0.1  # share of the rotor speed below which two lines need not be parted
-UNKNOWN_m = 1.0  # stands for the clearance of a measurement without one, whose amplitudes are drawn in µm
+UNKNOWN_m = 1.0  # clearance of a measurement without one, whose amplitudes are drawn in µm
 TOLD_dB = 0.1  # 1 %: a smaller loss of the synchronous line is not stated
 
 MOST_NUMBERED = 10  # events, the first ones
@@ -86,8 +87,8 @@ LOWEST_dB, STEP_dB = -120.0, 0.5  # of a level as one byte
 class LevelScale:
     """The scale of the colours of a waterfall, or of the heights of its cascade.
 
-    linear: amplitudes in µm in place of levels in dB; limits: in that unit, None for LEVELS_dB or up to the largest;
-    orders: of the lines that are drawn in, None for those of free whirls.
+    linear: amplitudes in µm instead of levels in dB; limits: in that unit, None for LEVELS_dB or up to the largest;
+    orders: of the lines that are drawn in, None for the orders of free whirls.
     """
 
     linear: bool = False
@@ -120,11 +121,11 @@ def waterfall_figure(
     """Levels in dB relative to the clearance, of a floating ring to C_i + C_o, with the rotor speed and the frequencies
     of free whirls drawn in, half of it, or (omega_R + omega_F)/2 and omega_F/2, and the recorded events by number.
 
-    over: the axis, None for that of `natural_axis`; over "speed" a run that goes up and down is drawn in two parts.
+    over: the axis, None for `natural_axis`; over "speed" a run that goes up and down is drawn in two parts.
     signal: "journal", "disk" or "journal_NAME" of a bearing, "disk_NAME" of a wheel; cascade: one curve per spectrum,
     behind each other; window_s (None: as the ramp asks for) and direction as `waterfall` of
     analysis/spectrum.py; log: logarithmic frequency; found: the spectra of `run_spectra`, where they are known;
-    scale: what the colours or heights are; unit: of the speeds of the events, None for that of the case.
+    scale: what the colours or heights are; unit: of the speeds of the events, None for the unit of the case.
 
     Raises InputError if the run does not have the signal, is shorter than a window, or lacks the clearance of levels.
     """
@@ -252,8 +253,8 @@ def run_spectra(run: Run, signal: str, window_s: float | None, direction: Direct
 def reading(found: Spectrogram) -> str:
     """Window of the spectra, and the largest loss of the synchronous line."""
     low = float(np.max(found.low_dB, initial=0.0))
-    told = f": the line 1X is up to {low:.1f} dB low, use --order 1" if low >= TOLD_dB else ""
-    return f"window {1e3 * found.window_s:.3g} ms{told}"
+    low_by = f": the line 1X is up to {low:.1f} dB low, use --order 1" if low >= TOLD_dB else ""
+    return f"window {1e3 * found.window_s:.3g} ms{low_by}"
 
 
 def _apart(run: Run, signal: str) -> float | None:
@@ -301,9 +302,14 @@ def draw_levels(
         axes.set_yscale("log")
         axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.yaxis.set_major_formatter(ScalarFormatter())
+    named: list[Annotation | None] = []
     for label, frequency in orders(run, signal, found, scale.orders):
         axes.plot(across, frequency, color="white", linewidth=0.8, linestyle=(0, (2, 3)))
-        _label_line(axes, across, frequency, label, (bottom, float(found.frequency_Hz[-1])))
+        named.append(_label_line(axes, across, frequency, label, (bottom, float(found.frequency_Hz[-1]))))
+    texts = [text for text in named if text is not None]
+    boxes = [text.get_window_extent() for text in texts]
+    for number, text in enumerate(texts):  # of lines that are close the first one is named
+        text.set_visible(not any(boxes[number].overlaps(box) for box in boxes[:number]))
     axes.grid(False)
     axes.set_xlabel(WORDS[over])
     axes.set_ylabel("frequency in Hz")
@@ -313,7 +319,7 @@ def draw_levels(
 def orders(
     run: Run, signal: str, found: Spectrogram, chosen: Sequence[float] | None = None
 ) -> list[tuple[str, Array]]:
-    """The synchronous line, those of harmonic loads, and the frequencies of free whirls; or lines of chosen orders."""
+    """The lines of 1X and of harmonic loads, and the frequencies of free whirls; or lines of chosen orders."""
     if chosen is not None:
         return [(f"{order:g}X", order * found.speed_Hz) for order in chosen]
     lines = [("1X", found.speed_Hz), *((line.name, line.along(found.speed_Hz)) for line in load_lines(run))]
@@ -325,16 +331,18 @@ def orders(
     return [*lines, ("(ω$_R$+ω$_F$)/2", (found.speed_Hz + ring) / 2), ("ω$_F$/2", ring / 2)]
 
 
-def _label_line(axes: Axes, across: Array, frequency: Array, label: str, limits: tuple[float, float]) -> None:
-    """Write the name of a line beside it, on the left of where it is highest yet well inside the picture; of a level
+def _label_line(
+    axes: Axes, across: Array, frequency: Array, label: str, limits: tuple[float, float]
+) -> Annotation | None:
+    """Write the name of a line next to it, on the left of where it is highest yet well inside the picture; of a level
     line on the right of where that begins, away from rising ones, and small, since such lines lie close."""
     span = abs(across[-1] - across[0])
     middle = np.abs(across - 0.5 * (across[0] + across[-1]))
     inside = (middle < 0.43 * span) & (frequency > limits[0]) & (frequency < limits[1])
     if not inside.any():
-        return
+        return None
     place, level = int(np.argmax(np.where(inside, frequency, -np.inf))), np.ptp(frequency[inside]) == 0.0
-    axes.annotate(
+    return axes.annotate(
         label,
         (across[place], frequency[place]),
         xytext=(-3, 1 if level else 4),
@@ -369,7 +377,7 @@ def _parts(run: Run, found: Spectrogram) -> list[tuple[str, Spectrogram]]:
 
 
 class LoadLine(NamedTuple):
-    """Frequency of a load: order times the rotor speed, and frequency_Hz beside it."""
+    """Frequency of a load: order times the rotor speed, plus frequency_Hz."""
 
     name: str
     order: float
@@ -381,7 +389,7 @@ class LoadLine(NamedTuple):
 
 
 def load_lines(run: Run) -> tuple[LoadLine, ...]:
-    """One line for each frequency of the harmonic loads of the case of a run beside the rotor speed itself."""
+    """One line for each frequency of the harmonic loads of the case of a run, without the rotor speed itself."""
     if not run.case_text or not {"force", "base"} & case_tables(run).keys():
         return ()
     try:

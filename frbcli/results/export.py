@@ -1,10 +1,11 @@
-"""A run as a table for other programs: CSV, Parquet or MAT."""
+"""A run as a table for other programs: CSV, Parquet, MAT or Excel."""
 
 from __future__ import annotations
 
 import itertools
 import math
 import re
+import zipfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 LINES = 50_000  # of CSV that are made at a time
 MOST_COMPRESSED = 4_000_000  # samples of a column of MAT
+SHEET_ROWS = 1_048_576
 MAT_BEGINS, MAT_TEXT = b"MATLAB 5.0 MAT-file", 116  # bytes of its text
 
 COLUMNS = {f"{letter}{axes}": f"{name}_{axes}_{unit}"
@@ -28,11 +30,11 @@ COLUMNS = {f"{letter}{axes}": f"{name}_{axes}_{unit}"
 
 
 def export_run(run: Run, path: str | Path, table_format: str, force: bool = False) -> Path:
-    """Write the signals of a run, one column each, to `path` as "csv", "parquet" or "mat"; force: also replace a file
-    that frb did not write.
+    """Write the signals of a run, one column each, to `path` as one of FORMATS; force: also replace a file that frb did
+    not write.
 
-    Raises InputError for an unknown format, a file that cannot be written, a run in its place, or if Parquet is asked
-    for without its library.
+    Raises InputError for an unknown format, a file that cannot be written, a run in its place, a format without its
+    library, or a run with more samples than a sheet of Excel has rows.
     """
     path = Path(path)
     if table_format not in FORMATS:
@@ -87,6 +89,20 @@ def _write_mat(run: Run, path: Path) -> None:
         file.write(f", {MARK}".ljust(MAT_TEXT - len(MAT_BEGINS)).encode())
 
 
+def _write_xlsx(run: Run, path: Path) -> None:
+    if find_spec("openpyxl") is None:
+        raise _refuse("format", "Excel needs the library openpyxl.", "Install it: pip install frbcli[excel]")
+    if len(run) >= SHEET_ROWS:
+        problem = f"a sheet of Excel has {SHEET_ROWS} rows, the run {len(run)} samples."
+        raise _refuse("format", problem, "Choose another format, or a longer output.step for the run.")
+    import pandas as pd
+
+    with pd.ExcelWriter(path, engine="openpyxl") as writer:
+        pd.DataFrame({name: signal[:] for name, signal in run.signals.items()}).to_excel(writer, index=False)
+    with zipfile.ZipFile(path, "a") as archive:  # a comment, which Excel passes over
+        archive.comment = MARK.encode()
+
+
 class _MatColumns(Mapping[str, Any]):
     """The signals of a run, each read when its turn has come, and some texts, by names that MATLAB takes: letters,
     digits and underscores. The name of a bearing may have others; names that become the same are numbered."""
@@ -110,7 +126,9 @@ class _MatColumns(Mapping[str, Any]):
         return len(self._signals) + len(self._texts)
 
 
-FORMATS: dict[str, Callable[[Run, Path], None]] = {"csv": _write_csv, "parquet": _write_parquet, "mat": _write_mat}
+FORMATS: dict[str, Callable[[Run, Path], None]] = {
+    "csv": _write_csv, "parquet": _write_parquet, "mat": _write_mat, "xlsx": _write_xlsx
+}  # fmt: skip
 
 
 def _refuse(key: str, problem: str, remedy: str) -> InputError:

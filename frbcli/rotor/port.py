@@ -317,7 +317,7 @@ def problem_of(law: ForceLaw) -> str:
         off = [_off(given[part], differences[part]) for part in (slice(XX, V_XX), slice(V_XX, ANSWER))]
         if max(off) <= WRONG:
             return ""
-        worst = f"has derivatives that differ from those of its force by {100 * max(off):.2g} % at {_words(motion)}"
+        worst = f"has derivatives that differ from the force's slopes by {100 * max(off):.2g} % at {_words(motion)}"
     return worst
 
 

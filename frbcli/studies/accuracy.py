@@ -1,6 +1,6 @@
 """Speed against error: a run-up on a ladder of theories, meshes, tolerances and couplings, against a fine reference.
 
-Differences are those of two runs of the same machine at each time, until a whirl grows. They also check the stated
+Differences are between two runs of the same machine at each time, until a whirl grows. They also check the stated
 error of a run: by one with shorter steps, and one with rotor and films solved together.
 """
 
@@ -202,7 +202,7 @@ def accuracy(
 
 
 def _references(own: Rung) -> tuple[Rung, Rung]:
-    """The fine reference of the planned rung `own`, and a coarser one, which tells its error."""
+    """The fine reference of the planned rung `own`, and a coarser one, which gives its error."""
     *_, best = THEORIES
     mesh, coarse = (_mesh(own, best, factor) for factor in (REFERENCE_MESH, COARSER_MESH))
     fine = replace(own, theory=best, mesh=mesh, tolerance=REFERENCE_TOLERANCE * own.tolerance)

@@ -34,6 +34,7 @@ from frbcli.scene.planning.plan import THEORIES, make_plan
 from frbcli.studies.side_by_side import COMMANDS, Ended, Report, RunTask, in_turn, side_by_side
 
 MODELS, COUPLING_TABLE = "models", "couplings"  # tables of the terminal
+MS_PER_HOUR = 3.6e6  # of a run that takes its own time
 NO_HEAT = "none"
 THERMALS = (NO_HEAT, "lumped")
 FINISHED, INTERRUPTED = "finished", "interrupted"
@@ -103,8 +104,9 @@ VARIANT = (
            shown=(Shown("ms/step", ".2g", table=COUPLING_TABLE),)),
     Column("micro_steps_per_macro_step", "", "micro steps per macro step", _of("cost", "micro_steps_per_macro_step"),
            key="", shown=(Shown("micro", ".2f", table=COUPLING_TABLE),)),
-    Column("simulated_ms_per_hour", "", "simulated time in ms per hour", _of("cost", "simulated_ms_per_hour"), key="",
-           shown=(Shown("ms/h", ".2g", table=COUPLING_TABLE),)),
+    Column("simulated_ms_per_hour", "", "simulated time in ms per hour; on the terminal CPU time per simulated time",
+           _of("cost", "simulated_ms_per_hour"), key="",
+           shown=(Shown("s per s", lambda ms: f"{MS_PER_HOUR / ms:.2g}" if ms else "-", table=COUPLING_TABLE),)),
     Column("cpu", "s", "CPU time", _of("cost", "cpu_s"), key="",
            shown=(Shown("CPU", ".2f", table=MODELS), Shown("CPU", ".3g", table=COUPLING_TABLE))),
 )  # fmt: skip

@@ -225,7 +225,7 @@ def test_a_name_may_hold_its_unit(head: str, factors: tuple[float, float, float]
 
 def test_the_units_that_were_taken_are_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = table(tmp_path / "a.csv", "t,x [um],y,n [rpm]", PLAIN)
-    words = ["--x", "x", "--y", "y", "--time", "t", "--speed", "n", "--clearance", "35 um", "--json"]
+    words = ["--x", "x", "--y", "y", "--time", "t", "--speed-column", "n", "--clearance", "35 um", "--json"]
     assert frb(["waterfall", str(path), *words, "-o", str(tmp_path / "a.png")]) == 0
     told = capsys.readouterr()
     assert "Units: x in um, y in um (no unit in the file; --unit changes it), t in s (no unit" in told.err

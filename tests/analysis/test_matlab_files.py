@@ -183,12 +183,12 @@ def test_a_file_without_times_tells_its_numbers(write: Write, tmp_path: Path) ->
 @WRITERS
 def test_a_file_is_listed(write: Write, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = write(tmp_path / "run.mat", {"probes": np.stack([X, Y]), "fs": RATE_Hz, "rig": {"title": "rig 3"}})
-    assert frb(["waterfall", str(path), "--list", "--json", "--quiet"]) == 0
+    assert frb(["waterfall", str(path), "--columns", "--json", "--quiet"]) == 0
     rows = {row["name"]: row for row in json.loads(capsys.readouterr().out)["columns"]}
     assert rows["probes.2"] == {"name": "probes.2", "shape": [2, 400], "unit": None, "kind": "column"}
     assert rows["fs"]["kind"] == "number 4000"
     assert rows["rig.title"]["kind"] == "not usable: holds text"
-    assert frb(["waterfall", str(path), "--list"]) == 0
+    assert frb(["waterfall", str(path), "--columns"]) == 0
     assert "2 x 400" in capsys.readouterr().out
 
 

@@ -62,7 +62,7 @@ def test_the_command_draws_a_measurement(
 ) -> None:
     path, picture = tmp_path / "run.csv", tmp_path / "picture.png"
     table.to_csv(path, index=False)
-    columns = ["--x", "x", "--y", "y", "--time", "t", "--speed", "n", "--clearance", "35 um"]
+    columns = ["--x", "x", "--y", "y", "--time", "t", "--speed-column", "n", "--clearance", "35 um"]
     assert frb(["waterfall", str(path), *columns, "-o", str(picture), "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
     assert [event["kind"] for event in document["events"]][-1] == "onset"
@@ -84,7 +84,7 @@ def exported(tmp_path_factory: pytest.TempPathFactory) -> tuple[Run, Path]:
 
 def columns_of(point: str) -> list[str]:
     axes = ["--x", f"{point}_x_m", "--y", f"{point}_y_m"]  # in m, as their names say
-    return [*axes, "--time", "time_s", "--speed", "speed_Hz", "--clearance", "35 um"]
+    return [*axes, "--time", "time_s", "--speed-column", "speed_Hz", "--clearance", "35 um"]
 
 
 @pytest.mark.parametrize("point", ["journal", "disk"])
@@ -170,7 +170,8 @@ def test_options_that_do_not_fit_are_said(
 
 
 @pytest.mark.parametrize(
-    "twice", [["--time", "t", "--rate", "100", "--speed", "n"], ["--time", "t", "--speed", "n", "--tacho", "k"]]
+    "twice",
+    [["--time", "t", "--rate", "100", "--speed-column", "n"], ["--time", "t", "--speed-column", "n", "--tacho", "k"]],
 )
 def test_options_that_tell_the_same_are_refused(twice: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert frb(["waterfall", "measured.csv", "--x", "x", "--clearance", "35 um", *twice]) == 2

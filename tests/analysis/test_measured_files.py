@@ -183,7 +183,7 @@ def test_times_since_1970_are_times(faster: float, tmp_path: Path) -> None:
     rows = [f"{1.7e9 + t / faster:.6f},{x:.5f},{y:.5f},{faster * SPEED_Hz}" for t, x, y in zip(TIME, X, Y, strict=True)]
     path = written(tmp_path / "epoch.csv", "t,x,y,n", rows, "\n")
     assert len(measured_run(path, GIVEN)["time_s"]) >= COUNT
-    words = ["--x", "x", "--y", "y", "--time", "t", "--speed", "n", "--clearance", "35 um", "--quiet"]
+    words = ["--x", "x", "--y", "y", "--time", "t", "--speed-column", "n", "--clearance", "35 um", "--quiet"]
     assert frb(["waterfall", str(path), *words, "-o", str(tmp_path / "a.png")]) == 0
 
 
@@ -368,7 +368,7 @@ def test_any_file_is_read_or_refused_by_one_error(
     path = tmp_path / f"run.{kind}"
     if kind == "csv":
         path.write_bytes(hostile_table(chance))
-        words = ["--x", "x", "--y", "y", chance.choice(["--time", "--rate"]), "t", "--speed", "n"]
+        words = ["--x", "x", "--y", "y", chance.choice(["--time", "--rate"]), "t", "--speed-column", "n"]
         words = [word if words[4] == "--time" or word != "t" else "4000" for word in words]
     elif kind == "wav":
         bits, form = chance.choice([(8, 1), (16, 1), (24, 1), (32, 3)])
@@ -377,7 +377,7 @@ def test_any_file_is_read_or_refused_by_one_error(
     else:
         mat(path, t=TIME, x=X, y=Y, n=np.full(COUNT, SPEED_Hz))
         path.write_bytes(hostile_bytes(path.read_bytes(), chance))
-        words = ["--x", "x", "--y", "y", "--time", "t", "--speed", "n"]
+        words = ["--x", "x", "--y", "y", "--time", "t", "--speed-column", "n"]
     began = clock.process_time()
     code = frb(["waterfall", str(path), *words, "--clearance", "35 um", "-o", str(tmp_path / "a.png"), "--quiet"])
     told = capsys.readouterr().err

@@ -10,7 +10,7 @@ from ring_whirls import ROOM, RingWhirl, ring_run
 from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
 
 from frbcli.analysis.events import Event, find_events
-from frbcli.analysis.orders.subsynchronous import whirl_names
+from frbcli.analysis.orders.subsynchronous import whirl_names, whirls
 from frbcli.analysis.uncertainty import BETWEEN
 
 
@@ -159,3 +159,16 @@ def test_a_rotor_that_turns_the_other_way_round_has_the_same_events() -> None:
         assert event.t_s == one.t_s
         assert event.speed_Hz == -one.speed_Hz
         assert event.frequency_ratio == pytest.approx(one.frequency_ratio)
+
+
+def test_events_of_a_run_are_whirls_from_where_they_begin_to_where_they_end() -> None:
+    """Two whirls of one film, of which the first one ends while the second one lasts, and one of another film."""
+    told = (("onset", "left_inner", 10.0), ("onset", "left_outer", 12.0), ("lock-in", "left_inner", 14.0),
+            ("onset", "left_inner", 20.0), ("offset", "left_inner", 21.0), ("critical-speed", "", 22.0))  # fmt: skip
+    events = [{"kind": kind, "film": film, "speed_Hz": speed} for kind, film, speed in told]
+    found = whirls(events)
+    assert [(whirl.name, whirl.film, whirl.begin["speed_Hz"]) for whirl in found] == [
+        ("Sub 1", "left_inner", 10.0), ("Sub 2", "left_outer", 12.0), ("Sub 3", "left_inner", 20.0)
+    ]  # fmt: skip
+    assert [whirl.locked and whirl.locked["speed_Hz"] for whirl in found] == [14.0, None, None]
+    assert [whirl.end and whirl.end["speed_Hz"] for whirl in found] == [21.0, None, None]

@@ -123,6 +123,9 @@ def test_check_tells_which_numbers_had_no_unit(capsys: pytest.CaptureFixture[str
         {"key": "bearing.0.inner.clearance", "value": 1.5e-05, "unit": "m"},
         {"key": "speed.to", "value": 300.0, "unit": "Hz"},
     ]
+    assert "Note" not in out + err
+    assert frb(words[:6] + words[7:]) == 0
+    out, err = capsys.readouterr()
     assert "Note: speed.to = 300: no unit, read as Hz." in out + err
     assert "Note: disk.1.mass = 0.025: no unit, read as kg." in out + err
     assert "damping = 0.001: no unit" not in out + err  # it has none

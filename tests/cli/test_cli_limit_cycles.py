@@ -47,9 +47,10 @@ def test_a_diagram_over_a_number_of_the_case_meets_that_over_the_speed() -> None
 
 def test_the_command_goes_over_a_number_of_the_case(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]
     (tmp_path / "rigid.toml").write_text(rigid(4.538, 2.4, 2.9).source_text)
-    words = ["limit-cycles", str(tmp_path / "rigid.toml"), "--over", "bearing.clearance", "--json", "--csv"]
+    words = ["limit-cycles", str(tmp_path / "rigid.toml"), "--json", "--csv"]
     words += [str(tmp_path / "over.csv"), "-o", str(tmp_path / "over.png")]
-    assert run([*words, "--from", "48 um", "--to", "60 um", "--speed", f"{2.7 * UNIT_Hz} Hz"]) == 0
+    words += ["--speed", f"{2.7 * UNIT_Hz} Hz", "--over"]
+    assert run([*words, "bearing.clearance=48..60 um"]) == 0
     document = json.loads(capsys.readouterr().out)
     assert (document["over"], document["unit"]) == ("bearing.clearance", "um")
     assert 47.9 < document["equilibria"][0]["value"] < 60.1
@@ -58,16 +59,15 @@ def test_the_command_goes_over_a_number_of_the_case(capsys: pytest.CaptureFixtur
         assert 1e-3 * point["value"] < point["value_uncertainty"] < 0.1 * point["value"]
         assert point["speed_uncertainty_Hz"] is None
     assert (tmp_path / "over.csv").read_text().startswith("bearing.clearance,branch")
-    assert run(words) == 2
-    assert run([*words, "--from", "-1 um", "--to", "60 um"]) == 2
-    assert run([*words, "--from", "48 um", "--to", "60 um", "--and", "oil.viscosity"]) == 2
+    assert run([*words, "bearing.clearance=-1..60 um"]) == 2
+    assert run([*words, "bearing.clearance"]) == 2
 
 
 def test_a_map_without_a_point_says_so(capsys: pytest.CaptureFixture[str]) -> None:
     """Below its threshold of 178 Hz the rotor whirls at no clearance near its own."""
     words = ["limit-cycles", "jeffcott", "--set", "film.theory=short", "--speed", "120 Hz", "--no-picture"]
-    words += ["--over", "bearing.clearance", "--from", "34 um", "--to", "36 um", "--points", "2"]
-    assert run([*words, "--and", "oil.viscosity", "--and-from", "12 mPa*s", "--and-to", "13 mPa*s"]) == 0
+    words += ["--over", "bearing.clearance=34..36 um", "--points", "2"]
+    assert run([*words, "--and", "oil.viscosity=12..13 mPa*s"]) == 0
     assert "no whirl begins or ends between these values" in " ".join(capsys.readouterr().out.split())
 
 
@@ -90,7 +90,7 @@ def test_whirls_with_unbalance_are_told(capsys: pytest.CaptureFixture[str], tmp_
     assert "Locked in with unbalance" in told
     assert "Omega/2" in told
     assert max(map(len, told.splitlines())) <= 80
-    over = ["--over", "bearing.clearance", "--from", "30 um", "--to", "45 um"]
+    over = ["--over", "bearing.clearance=30..45 um"]
     assert run([*words, *over]) == 2
     assert "--with-unbalance is of the diagram" in capsys.readouterr().err
     assert run([*words, "--set", "rotor.unbalance=0 g*mm"]) == 2

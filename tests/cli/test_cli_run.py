@@ -75,10 +75,8 @@ def test_runup_says_one_json_document_and_leaves_a_picture(capsys: pytest.Captur
     assert (found["status"], found["t_end_s"]) == ("finished", 0.3)
     assert found["events"] == read_run("jeffcott.h5").events
     assert found["cost"]["steps"] == read_run("jeffcott.h5").cost["steps"]
-    assert "finished at 0.3 s" in said.err
-    assert "cost and error" in said.err
+    assert "finished at 0.3 s" not in said.err
     assert Path("jeffcott-summary.png").read_bytes().startswith(PNG)
-    assert max(map(len, said.err.splitlines())) <= 80
 
 
 def test_quiet_says_nothing(capsys: pytest.CaptureFixture[str]) -> None:
@@ -99,7 +97,7 @@ def test_quiet_json_says_json_alone(capsys: pytest.CaptureFixture[str]) -> None:
     [
         (["runup", "no-such-case"], "no-such-case"),
         (["runup", *QUICK, "--set", "rotor.mass=-1 kg"], "rotor.mass"),
-        (["runup", *QUICK, "-o", "."], "not a file"),
+        (["runup", *QUICK, "-o", "."], "has to end with .h5"),
         (["rundown", *QUICK, "-o", "foreign.h5"], "not replaced"),
         (["rundown", *QUICK, "-o", "foreign.h5", "--resume"], "not replaced"),
         (["runup", *QUICK, "--set", "film.cavitation=elrod"], "not modelled in this version"),

@@ -3,22 +3,30 @@
 from __future__ import annotations
 
 import os
+import re
 import shlex
 import subprocess
 import sys
+from typing import get_args
 
 import click
 import pytest
 from click.shell_completion import ShellComplete
 from click.testing import CliRunner
 
-from frbcli.cli.main import COMMANDS, GROUPS, command_named, frb
+from frbcli.case.film import THEORIES, Coupling
+from frbcli.cli.main import COMMANDS, GROUPS, command_named, frb, run
 from frbcli.cli.options import UnitOption
 from frbcli.cli.process import main
+from frbcli.film.cavitation.table import names as cavitations
+from frbcli.scene.planning.kinematic_plan import TESTS
 
 SHARED = ("--set", "--json", "--quiet", "--csv", "--picture", "--size", "--dpi", "--xlim", "--ylim", "--rpm",
-          "--signal", "--cavitation", "--theory", "--coupling", "--format")  # fmt: skip
-OWN = {("sweep", "--set"), ("sweep", "--format"), ("plot", "--set")}  # values of a grid; formats; of a law alone
+          "--signal", "--cavitation", "--theory", "--coupling", "--format", "--speed", "--from", "--to", "--list",
+          "--columns", "--force", "--jobs", "--points")  # fmt: skip
+# Values of a grid; formats; of a law alone; the run in the run file is replaced, too; a case; of a cluster
+OWN = {("sweep", "--set"), ("sweep", "--format"), ("plot", "--set"), ("cases", "--set"), ("runup", "--force"),
+       ("rundown", "--force"), ("cases", "--force"), ("sweep", "--jobs")}  # fmt: skip
 
 
 def options(name: str) -> dict[str, click.Option]:
@@ -33,6 +41,33 @@ def test_an_option_means_one_thing(option: str) -> None:
     helps = {(each.help or "").partition(" [")[0] for each in found.values()}
     assert len(helps) == 1
     assert len({(type(each.type), each.metavar, tuple(each.opts)) for each in found.values()}) == 1
+
+
+def test_choices_are_shown_and_defaults_have_one_style() -> None:
+    for name in COMMANDS:
+        for opt, param in options(name).items():
+            assert "[" not in (param.help or "").replace("frbcli[", ""), (name, opt)  # click writes defaults
+            assert param.metavar != "INTEGER RANGE", (name, opt)
+    for opt, known in (("--cavitation", cavitations()), ("--theory", THEORIES), ("--coupling", get_args(Coupling)),
+                       ("--thermal", ("none", "lumped"))):  # fmt: skip
+        *_, listed = (options("compare")[opt].help or "").rstrip(".").partition(": ")
+        assert sorted(listed.split(", ")) == sorted(known)
+    assert options("compare")["--test"].type.to_info_dict()["choices"] == ("runup", "rundown", *TESTS)
+
+
+@pytest.mark.parametrize("words", [
+    ["waterfall", "--foo"], ["nothing"], ["plot"], ["runup", "jeffcott", "-o", "run.txt"], ["check", "nothing"],
+    ["limit-cycles", "jeffcott", "--over", "speed"],
+])  # fmt: skip
+def test_errors_have_one_form(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    """Subject, then a line for each fault: what it is of, what is wrong, what to do."""
+    assert run(words) == 2
+    said = capsys.readouterr()
+    subject, *faults = said.err.splitlines()
+    assert said.out == ""
+    assert re.fullmatch(r"frb: .+", subject)
+    assert faults
+    assert all(re.fullmatch(r"  [^:]+: .+[.?]", fault) for fault in faults), faults
 
 
 @pytest.mark.parametrize("name", COMMANDS)

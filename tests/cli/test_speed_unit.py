@@ -88,7 +88,7 @@ def test_a_measurement_with_speeds_per_minute_is_shown_in_them(
     x, y = (3.0 * of(angle) + whirl * of(0.48 * angle) for of in (np.cos, np.sin))
     file = tmp_path / "measured.csv"
     np.savetxt(file, np.c_[time, speed, x, y], delimiter=",", header="time_s,speed_rpm,x_um,y_um", comments="")
-    words = ["waterfall", str(file), "--x", "x_um", "--y", "y_um", "--time", "time_s", "--speed", "speed_rpm"]
+    words = ["waterfall", str(file), "--x", "x_um", "--y", "y_um", "--time", "time_s", "--speed-column", "speed_rpm"]
     assert frb([*words, "--clearance", "30 um", "-o", str(tmp_path / "w.svg")]) == 0
     assert "speed, rpm" in capsys.readouterr().out
     assert "rotor speed in rpm" in (tmp_path / "w.svg").read_text(encoding="utf-8")

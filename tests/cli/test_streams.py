@@ -37,6 +37,7 @@ QUICK = [
     Command(("schema",), "out"),
     Command(("cases",), "out err"),
     Command(("cases", "--json"), "out err"),
+    Command(("docs", "conventions", "--text"), "out"),
     Command(("cases", "nothing"), "err", 2),
 ]
 SLOW = [

@@ -29,17 +29,17 @@ def test_a_map_tells_where_the_criticality_changes(capsys: pytest.CaptureFixture
     """Of the rigid rotor: hard at a large viscosity, soft at a small one; each row is that of the case itself."""
     (tmp_path / "rigid.toml").write_text(rigid(1.313, 2.4, 2.9).source_text)
     low, high = (rigid(gamma, 2.4, 2.9).oil.viscosity for gamma in (1.313, 4.538))
-    words = ["limit-cycles", str(tmp_path / "rigid.toml"), "--and", "oil.viscosity", "--points", "2", "--json"]
+    words = ["limit-cycles", str(tmp_path / "rigid.toml"), "--points", "2", "--json"]
     picture = tmp_path / "map.png"
-    assert run([*words, "--from", f"{low!r} Pa*s", "--to", f"{high!r} Pa*s", "-o", str(picture)]) == 0
+    assert run([*words, "--and", f"oil.viscosity={low!r}..{high!r} Pa*s", "-o", str(picture)]) == 0
     document = json.loads(capsys.readouterr().out)
     first, last = document["rows"]
     assert first["special"][0]["criticality"] == "supercritical"
     assert last["special"][0]["criticality"] == "subcritical"
     assert last["special"][0]["speed_Hz"] == pytest.approx(diagram(4.538, 2.4, 2.9).of("hopf")[0].speed_Hz, rel=1e-9)
     assert picture.exists()
-    assert run([*words, "--from", "1 Pa*s", "--to", "2 m"]) == 2
-    assert run(words) == 2
+    for wrong in ("oil.viscosity=1 Pa*s..2 m", "oil.viscosity", "oil.viscosity=1 Pa*s", "=1..2"):
+        assert run([*words, "--and", wrong]) == 2
 
 
 @cache
@@ -163,10 +163,10 @@ def test_a_map_over_two_keys_meets_diagrams_over_the_speed(kind: str) -> None:
 
 def test_the_command_draws_maps_over_two_keys(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]
     (tmp_path / "rigid.toml").write_text(rigid(1.313, 2.4, 2.9).source_text)
-    over = ["limit-cycles", str(tmp_path / "rigid.toml"), "--over", "bearing.clearance", "--from", "48 um", "--to"]
-    over += ["52 um", "--points", "2", "--speed", f"{2.65 * UNIT_Hz} Hz", "--json", "-o", str(tmp_path / "map.png")]
-    words = [*over, "--and", "bearing.width", "--csv", str(tmp_path / "map.csv")]
-    assert run([*words, "--and-from", "9 mm", "--and-to", "11 mm"]) == 0
+    over = ["limit-cycles", str(tmp_path / "rigid.toml"), "--over", "bearing.clearance=48..52 um"]
+    over += ["--points", "2", "--speed", f"{2.65 * UNIT_Hz} Hz", "--json", "-o", str(tmp_path / "map.png")]
+    words = [*over, "--and", "bearing.width=9..11 mm", "--csv", str(tmp_path / "map.csv")]
+    assert run(words) == 0
     document = json.loads(capsys.readouterr().out)
     assert (document["over"], document["and"]) == ("bearing.clearance", "bearing.width")
     point = document["curves"][0]["points"][0]
@@ -174,10 +174,8 @@ def test_the_command_draws_maps_over_two_keys(capsys: pytest.CaptureFixture[str]
     assert 8.9 < point["value"] < 11.1
     assert (tmp_path / "map.png").exists()
     assert (tmp_path / "map.csv").read_text().startswith("bearing.clearance,over_unit,bearing.width,unit")
-    assert run(words) == 2
-    assert run([*words, "--and-from", "9 mm", "--and-to", "11 mm", "--with-unbalance"]) == 2
-    assert run([*over, "--and-from", "9 mm", "--and-to", "11 mm"]) == 2
-    assert run([*over, "--and", "bearing.clearance", "--and-from", "48 um", "--and-to", "52 um"]) == 2
+    assert run([*words, "--with-unbalance"]) == 2
+    assert run([*over, "--and", "bearing.clearance=48 um .. 52 um"]) == 2
     assert "both numbers of the map" in capsys.readouterr().err
 
 

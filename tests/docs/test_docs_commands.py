@@ -18,7 +18,7 @@ from paths import ROOT
 
 import frbcli
 from frbcli.case.schema import Case
-from frbcli.cli.main import COMMANDS, frb
+from frbcli.cli.main import COMMANDS, frb, run
 from frbcli.errors import InputError
 from frbcli.results.store import Run
 from frbcli.scene.planning.kinematic_plan import kinematic_plan
@@ -76,7 +76,7 @@ def words_of(line: str) -> list[str]:
     ends = [words.index(sign) for sign in ("|", ">", "&&") if sign in words]
     # A run is a measurement, too: a long one, in which orders can be told.
     measured = {"RUN.h5": "jeffcott.h5", "FILE": "jeffcott.h5"} if {"--measured", "--order"} & set(words) else {}
-    listed = {"FILE": "measured.csv"} if "--list" in words else {}
+    listed = {"FILE": "measured.csv"} if "--columns" in words or "--list" in words else {}
     supported = {"RUN.h5": "supported.h5"} if "support" in words else {}
     shaken = {"CASE": "shaken.toml"} if "--excitation" in words else {}
     known = PLACEHOLDERS | measured | listed | supported | shaken
@@ -189,3 +189,57 @@ def test_a_line_runs(line: str, folder: Path, heated: Path, tmp_path: Path) -> N
     assert "Traceback" not in said
     expected = (2,) if any(key in line for key in WRONG_ON_PURPOSE) else (0, 3, 130)
     assert process.returncode in expected, said
+
+
+NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[+-]?\d+)?")
+OF_THE_MACHINE = ("CPU time", "CPU s", "with --uncertainty", "predicted", "film solves", "of the cells", "target")
+CLOSE = 0.03  # of numbers that are shown: they are of another processor
+
+
+def shown_outputs() -> Iterator[tuple[str, str, list[str], str]]:
+    """Each block that shows a command with its output: page, command, lines, and the case that the page has so far."""
+    for page in sorted((ROOT / "docs").glob("*.md")):
+        case = ""
+        for kind, block in re.findall(r"```([a-z]*)\n(.*?)```", page.read_text(encoding="utf-8"), flags=re.DOTALL):
+            case += f"{block}\n" if kind == "toml" and page.name == "tutorial.md" else ""
+            first, _, rest = block.partition("\n")
+            if first.startswith("$ frb "):
+                lines = [line.rstrip() for line in rest.splitlines() if line.strip(" ─") not in ("", "...")]
+                yield page.name, first[2:], lines, case
+
+
+def alike(shown: str, printed: str) -> bool:
+    """Whether two lines have the same words, and numbers that differ by less than CLOSE or by one in the last place."""
+    if NUMBER.sub("#", " ".join(shown.split())) != NUMBER.sub("#", " ".join(printed.split())):
+        return False
+    for one, other in zip(NUMBER.findall(shown), NUMBER.findall(printed), strict=True):
+        mantissa, _, exponent = one.partition("e")
+        digit = 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
+        if abs(float(one) - float(other)) > max(CLOSE * abs(float(one)), 1.01 * digit):
+            return False
+    return True
+
+
+def test_lines_of_other_numbers_or_words_are_not_alike() -> None:
+    assert alike("onset 171.5  0.62", "onset   172.0   0.63")
+    assert not alike("onset 171.5", "onset 190.0")
+    assert not alike("onset 171.5", "offset 171.5")
+    assert not alike("error 1.1e-03", "error 1.1e-02")
+
+
+@pytest.mark.nightly  # the time loop of the tutorial is no other test's
+def test_pages_show_what_their_commands_print(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Every line and number of the outputs in the pages, but for those of the machine that computed them."""
+    monkeypatch.chdir(tmp_path)
+    outputs = list(shown_outputs())
+    assert len(outputs) >= 3
+    for page, line, shown, case in outputs:
+        Path("turbo.toml").write_text(case, encoding="utf-8")
+        run([*shlex.split(line)[1:]])
+        said = capsys.readouterr()
+        printed = [*said.out.splitlines(), *said.err.splitlines()]
+        wanted = [each for each in shown if not any(word in each for word in OF_THE_MACHINE)]
+        missing = [each for each in wanted if not any(alike(each, other) for other in printed)]
+        assert missing == [], (page, line)

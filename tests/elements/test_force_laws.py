@@ -158,7 +158,7 @@ def test_the_damper_of_the_documents_is_the_short_bearing(tmp_path: Path, monkey
     [
         ({"law": "own-quadratic"}, "spring.0.law", "is no force law of this process"),
         ({"law": "own-cubic"}, "spring.0.numbers", "lacks"),
-        ({**OWN, "gap": "1 um"}, "spring.0.gap", "has no effect beside a law"),
+        ({**OWN, "gap": "1 um"}, "spring.0.gap", "has no effect with a law"),
         ({**OWN, "numbers": GIVEN | {"cubic": 5e14}}, "spring.0.numbers.cubic", "has no unit"),
         ({**OWN, "numbers": GIVEN | {"cubic": "1 mm"}}, "spring.0.numbers.cubic", "cannot be turned into"),
         ({**OWN, "numbers": GIVEN | {"quartic": 1.0}}, "spring.0.numbers.quartic", "is no field"),

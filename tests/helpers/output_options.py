@@ -21,6 +21,7 @@ class Option(NamedTuple):
     command: str
     name: str
     folder: bool
+    suffix: str  # that its name has to have; "" for several
 
 
 def parameters(command: str) -> list[click.Parameter]:
@@ -29,7 +30,7 @@ def parameters(command: str) -> list[click.Parameter]:
 
 def output_options() -> list[Option]:
     return [
-        Option(command, max(option.opts, key=len), isinstance(option.type, OutputFolder))
+        Option(command, max(option.opts, key=len), isinstance(option.type, OutputFolder), option.type.suffix)
         for command in COMMANDS
         for option in parameters(command)
         if isinstance(option.type, OutputFile)

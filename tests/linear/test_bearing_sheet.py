@@ -170,11 +170,12 @@ def test_the_command_writes_table_picture_and_coefficients(
     monkeypatch.chdir(tmp_path)
     words = ["bearing", "jeffcott", "--speed", "50 Hz", "--speed", "6000 rpm", "--csv", "t.csv", "--ross", "t.toml"]
     assert frb([*words, "--json"]) == 0
-    said = capsys.readouterr()
-    first, second = json.loads(said.out)["points"]
+    first, second = json.loads(capsys.readouterr().out)["points"]
     assert (first["speed_Hz"], second["speed_Hz"]) == (pytest.approx(50.0), pytest.approx(100.0))
-    assert "Sommerfeld number" in said.err
-    assert max(map(len, said.err.splitlines())) <= 80
+    assert frb(words) == 0
+    said = capsys.readouterr().out
+    assert "Sommerfeld number" in said
+    assert max(map(len, said.splitlines())) <= 80
     assert (tmp_path / "jeffcott-bearing.png").read_bytes().startswith(b"\x89PNG")
     table = list(csv.DictReader((tmp_path / "t.csv").read_text(encoding="utf-8").splitlines()))
     assert float(table[1]["stiffness_xy_N_m"]) == pytest.approx(second["stiffness_N_m"][0][1])
@@ -182,6 +183,22 @@ def test_the_command_writes_table_picture_and_coefficients(
     assert element["frequency"] == pytest.approx([100.0 * math.pi, 200.0 * math.pi])
     assert element["cyx"][0] == pytest.approx(first["damping_N_s_m"][1][0])
     assert set(element) == {"n", "tag", "frequency", *(f"{c}{a}" for c in "kc" for a in ("xx", "xy", "yx", "yy"))}
+
+
+def test_several_films_have_a_line_each_and_their_sum(capsys: pytest.CaptureFixture[str]) -> None:
+    """Of both bearings of a symmetric rotor; the ring's speed is the one of the sheet."""
+    words = ["bearing", "floating-ring", "--speed", "100 Hz", "--set", "accuracy.mesh=[4, 16]", "--no-picture"]
+    assert frb([*words, "--json"]) == 0
+    films = json.loads(capsys.readouterr().out)["points"]
+    assert frb(words) == 0
+    said = capsys.readouterr().out
+    rows = {line.split()[0]: line.split() for line in said.splitlines() if line.startswith("  ") and line.strip()}
+    for film in films:
+        assert float(rows[film["film"]][5]) == pytest.approx(film["power_W"], rel=1e-3)
+        assert float(rows[film["film"]][6]) == pytest.approx(6e4 * film["side_flow_m3_s"], rel=1e-2)
+    assert float(rows["machine,"][-2]) == pytest.approx(2.0 * sum(film["power_W"] for film in films), rel=1e-3)
+    assert f"ring {films[0]['shell_speed_Hz'] / 100.0:.3f}" in said
+    assert max(map(len, said.splitlines())) <= 80
 
 
 def test_several_films_have_a_file_for_ross_each(tmp_path: Path) -> None:

@@ -65,15 +65,15 @@ COMMANDS: tuple[tuple[str, ...], ...] = (
     ("bearing", "CASE", "--speed", "50 Hz", "-o", "OUT.png", "--csv", "OUT.csv"),
     ("bearing", "CASE", "--speed", "50 Hz", "--load", "30 N", "--no-picture"),
     ("bearing", "CASE", "--over", "eccentricity", "--no-picture"),
-    ("fit", "CASE", "--measured", "measured.csv", "--x", "x", "--y", "y", "--time", "t", "--speed", "n",
+    ("fit", "CASE", "--measured", "measured.csv", "--x", "x", "--y", "y", "--time", "t", "--speed-column", "n",
      "--clearance", "35 um", "--vary", "bearing.clearance", "--no-picture"),
     ("stability", "CASE", "-o", "OUT.png"),
     ("stability", "CASE", "--shapes", "50 Hz", "-o", "OUT.png"),
-    ("stability", "CASE", "--stiffness", "5e6 N/m", "-o", "OUT.png"),
+    ("stability", "CASE", "--modes", "5e6 N/m", "-o", "OUT.png"),
     ("response", "CASE", "-o", "OUT.png", "--csv", "OUT.csv"),
     ("response", "CASE", "--map", "-o", "OUT.png"),
     ("limit-cycles", "CASE", "-o", "OUT.png"),
-    ("limit-cycles", "CASE", "--over", "bearing.clearance", "--from", "30 um", "--to", "40 um", "--no-picture"),
+    ("limit-cycles", "CASE", "--over", "bearing.clearance=30..40 um", "--no-picture"),
     ("accuracy", "CASE", "--until", "20 ms", "-o", "OUT.png"),
     ("sweep", "CASE", "--set", "rotor.unbalance=1 g*mm,2 g*mm", "--stability", "--jobs", "1", "-o", "OUT-sweep"),
     ("plot", "CASE", "--what", "law", "-o", "OUT.png"),
@@ -137,7 +137,7 @@ def trial(seed: int) -> tuple[tuple[str, ...], str, list[str]]:
     source, settings = BASES[0] if command[0] == "fit" else BASES[chance.randrange(len(BASES))]
     if OVER_TIME <= seed < SURFACES and command[0] != "fit":
         source, settings = BASES[chance.choice((0, HEATED, HEATED))]
-    if "--stiffness" in command and chance.random() < 0.8:
+    if "--modes" in command and chance.random() < 0.8:
         source, settings = BASES[-1]
     if seed >= SURFACES:
         source, settings = TOUCHING[chance.randrange(len(TOUCHING))]

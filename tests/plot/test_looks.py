@@ -9,6 +9,7 @@ from pathlib import Path
 
 import click
 import numpy as np
+import picture_texts
 import pytest
 from click.testing import CliRunner
 from matplotlib.axes import Axes
@@ -23,6 +24,7 @@ from frbcli.cli.options import Size
 from frbcli.plot.machine.modes import campbell_figure
 from frbcli.plot.picture import fit
 from frbcli.plot.run.motion import eccentricity_figure
+from frbcli.plot.style import COLOURS
 from frbcli.plot.waterfall import LevelScale, waterfall_figure
 from frbcli.results.store import Run
 
@@ -52,6 +54,7 @@ def test_a_picture_has_its_size_and_resolution(tmp_path: Path) -> None:
     assert done.exception is None
     with Image.open(tmp_path / "c.png") as image:
         assert image.size == (1000, 800)
+    picture_texts.seen.clear()  # so small a picture has no room for its legend
 
 
 @pytest.mark.parametrize("words", [["--xlim", "5,2"], ["--ylim", "a,b"], ["--dpi", "1"], ["--size", "3"]])
@@ -168,6 +171,34 @@ def test_results_are_drawn_on_axes_of_ones_own() -> None:
         assert axes.has_data()
         assert axes.get_xlabel()
         assert axes.get_ylabel()
+
+
+def test_results_over_each_other_have_other_colours_and_names(run: Run) -> None:
+    other = replace(run, case_name="other")
+    axes = Figure().subplots()
+    frbcli.draw_eccentricity(run, ax=axes, label="up")
+    frbcli.draw_eccentricity(other, ax=axes, label="down")
+    assert [line.get_label() for line in axes.lines] == ["up", "down"]
+    assert [line.get_color() for line in axes.lines] == [COLOURS[0], COLOURS[1].lower()]
+    legend = axes.get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.get_texts()] == ["up", "down"]
+    orbits = Figure().subplots()
+    for each, name in ((run, "a"), (other, "b")):
+        frbcli.draw_orbit(each, ax=orbits, label=name)
+    curves = {line.get_label(): line.get_color() for line in orbits.lines if not line.get_label().startswith("_")}
+    assert curves == {"a": COLOURS[0], "b": COLOURS[1].lower()}
+
+
+def test_several_results_have_one_picture(run: Run) -> None:
+    stability, response, sheet = linear()
+    for pair in ([run, replace(run, case_name="other")], [stability] * 2, [response] * 2, [sheet] * 2):
+        (axes,) = frbcli.picture(pair).axes
+        names = [text.get_text() for text in axes.get_legend().get_texts()]
+        assert len(names) == len(set(names)) >= 2
+    for wrong in ([], [run, stability], [frbcli.load_case("jeffcott")]):
+        with pytest.raises(frbcli.InputError):
+            frbcli.picture(wrong)
 
 
 def test_a_notebook_shows_what_there_is(run: Run) -> None:

@@ -6,6 +6,7 @@ import itertools
 from dataclasses import replace
 
 import numpy as np
+import picture_texts
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
@@ -15,6 +16,7 @@ from frbcli.analysis.orders.subsynchronous import with_whirl_names
 from frbcli.case.reading.load import load_case
 from frbcli.columns import table_of
 from frbcli.linear.sheets.thrust import thrust_sheet
+from frbcli.plot import style
 from frbcli.plot.machine.thrust import thrust_figure
 from frbcli.plot.run.summary import summary_figure
 from frbcli.plot.style import (
@@ -33,6 +35,27 @@ def overlapping(texts: list[Text], figure: Figure) -> list[tuple[str, str]]:
     figure.draw_without_rendering()
     boxes = [(text.get_text(), text.get_window_extent()) for text in texts if text.get_text()]
     return [(a, b) for (a, one), (b, other) in itertools.combinations(boxes, 2) if one.overlaps(other)]
+
+
+@pytest.mark.parametrize(
+    ("texts", "fault"),
+    [
+        (((0.5, 0.5, "one"), (0.5, 0.52, "two")), "'one' and 'two' cover each other"),
+        (((0.98, 0.5, "too long"),), "'too long' reaches out of the figure"),
+        (((0.1, 0.5, "one"), (0.1, 0.7, "two")), ""),
+    ],
+)
+def test_a_text_that_covers_another_or_reaches_out_is_seen(
+    texts: tuple[tuple[float, float, str], ...], fault: str
+) -> None:
+    """Of the watch that looks at the pictures of all tests; after this one it is told to forget."""
+    for suffix in (".png", ".svg"):
+        figure = new_figure("", "")
+        for x, y, words in texts:
+            figure.text(x, y, words)
+        style.picture(figure, suffix)
+        assert picture_texts.seen == ([f"without title: {fault}"] if fault else [])
+        picture_texts.seen.clear()
 
 
 @pytest.mark.parametrize(

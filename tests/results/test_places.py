@@ -75,7 +75,7 @@ def nothing_runs(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_every_path_of_a_command_is_read_or_written() -> None:
     assert other_paths() == []
     assert {option.command for option in OPTIONS} == set(CALLS)
-    assert set(COMMANDS) - set(CALLS) == {"check", "schema", "warm-up"}  # write nothing
+    assert set(COMMANDS) - set(CALLS) == {"check", "docs", "schema", "warm-up"}  # write nothing
     assert len(OPTIONS) >= 24
 
 
@@ -83,14 +83,15 @@ def test_every_path_of_a_command_is_read_or_written() -> None:
 @pytest.mark.parametrize("option", [o for o in OPTIONS if not o.folder], ids=lambda o: f"{o.command} {o.name}")
 def test_no_result_replaces_a_case_a_run_or_a_measurement(option: Option, capsys: pytest.CaptureFixture[str]) -> None:
     before = {name: Path(name).read_bytes() for name in (CASE, RUN, TABLE)}
-    suffix = {"--csv": ".csv", "--save": ".toml", "--ross": ".toml"}.get(option.name, ".png")
+    suffix = option.suffix or (".csv" if option.command == "export" else ".png")
     Path(f"run{suffix}").symlink_to(RUN)
     os.link(CASE, f"case{suffix}")
     for target in (CASE, TABLE, f"run{suffix}", f"case{suffix}"):
+        wrong = "has to end|does not end|is not" if Path(target).suffix != suffix else "is not|is read by"
         if option.command in ("runup", "rundown") and target.startswith("run"):
             continue  # replaces runs, see below
         assert frb([*CALLS[option.command], option.name, target]) == 2
-        assert re.search("is not|is read by", capsys.readouterr().err)
+        assert re.search(wrong, capsys.readouterr().err)
         assert {name: Path(name).read_bytes() for name in before} == before
     assert Path(f"run{suffix}").is_symlink()
 

@@ -130,8 +130,7 @@ def test_finished_rows_of_a_comparison_are_printed(
     assert found["status"] == status
     (row,) = found["results"]
     assert (row["cavitation"], row["status"]) == ("half-sommerfeld", "finished")
-    assert "half-sommerfeld short" in said.err
-    assert f"Not all models were run: {' '.join(str(error).split()) or status}" in said.err
+    assert " ".join(found["message"].split()) == " ".join(str(error).split())
 
 
 def test_a_comparison_without_a_row_ends_as_its_first_run() -> None:
@@ -170,7 +169,7 @@ def test_rungs_of_a_ladder_stay_when_it_is_interrupted(
     said = capsys.readouterr()
     found = json.loads(said.out)
     assert (found["status"], len(found["ladder"])) == ("interrupted", 2)
-    assert "2 rungs are done" in said.err
+    assert "2 rungs" not in said.err  # text is for people, without --json
 
 
 def test_a_ladder_without_its_reference_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -192,7 +191,7 @@ def test_models_of_a_test_that_are_done_are_printed(
         "interrupted",
         ["half-sommerfeld"],
     )
-    assert "Interrupted" in said.err
+    assert "Interrupted" not in said.err  # text is for people, without --json
 
 
 def test_an_interrupted_point_ends_a_sweep_in_this_process(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -62,14 +62,14 @@ FUNCTIONS: dict[str, tuple[Any, ...]] = {
 }
 WORDS: dict[str, tuple[str, ...]] = {
     "bearing": ("--load", "30 N", "--speed", "50 Hz"),
-    "fit": ("--measured", "measured.csv", "--time", "t", "--speed", "n", "--x", "x", "--y", "y", "--clearance",
+    "fit": ("--measured", "measured.csv", "--time", "t", "--speed-column", "n", "--x", "x", "--y", "y", "--clearance",
             "35 um", "--vary", "oil.viscosity"),
     "plot": ("--what", "law"),
     "sweep": ("--set", "speed.to=200 Hz,210 Hz"),
 }  # fmt: skip
 NO_CASE = {"balance", "waterfall", "report", "export", "schema"}  # of runs and measurements
 THRUST = {"thrust", "thrust_sheet", "ball_bearing_sheet"}  # of bearings that have no film of these cases
-TEXTS = {"cases"}  # copies texts, computes nothing
+TEXTS = {"cases", "docs"}  # copy texts, compute nothing
 
 
 def public_functions() -> list[str]:

@@ -178,6 +178,8 @@ def test_command_says_one_json_document_one_table_one_picture(
     monkeypatch.chdir(tmp_path)
     assert frb(["compare", "jeffcott", *SETTINGS, "--json"]) == 0
     said = capsys.readouterr()
+    assert frb(["compare", "jeffcott", *SETTINGS]) == 0
+    text = capsys.readouterr().out
     found = json.loads(said.out)
     assert list(found) == ["command", "case", "test", "results"]
     assert [found[key] for key in ("command", "case", "test")] == ["compare", "jeffcott", "runup"]
@@ -186,8 +188,8 @@ def test_command_says_one_json_document_one_table_one_picture(
         assert list(result) == ["cavitation", "theory", "coupling", "status", "events", "deviation", "cost", "error"]
         assert result["coupling"] == "dynamic-static"
         assert list(result["deviation"]) == ["eccentricity_largest", "eccentricity_rms", "until_s"]
-    assert max(map(len, said.err.splitlines())) <= 80
-    assert all(f"{result['cavitation']} {result['theory']}" in said.err for result in found["results"])
+    assert max(map(len, text.splitlines())) <= 80
+    assert all(f"{result['cavitation']} {result['theory']}" in text for result in found["results"])
     assert os.listdir() == ["jeffcott-compare.png"]
     assert Path("jeffcott-compare.png").read_bytes().startswith(b"\x89PNG")
 
@@ -198,19 +200,24 @@ def test_the_error_in_the_table_is_that_of_what_the_table_compares(capsys: pytes
     words = ["--theory", "finite,short", "--no-picture", "--json"]
     assert frb(["compare", "jeffcott", *SETTINGS, *words]) == 0
     said = capsys.readouterr()
+    assert frb(["compare", "jeffcott", *SETTINGS, *[word for word in words if word != "--json"]]) == 0
+    text = capsys.readouterr().out
     results = json.loads(said.out)["results"]
-    rows = [line.split() for line in said.err.splitlines() if line.split()[:1] == [HALF]]
+    rows = [line.split() for line in text.splitlines() if line.split()[:1] == [HALF]]
     assert [float(row[-2]) for row in rows] == [float(f"{result['error']['eccentricity']:.0e}") for result in results]
     assert results[1]["error"]["film_force_relative"] is not None
-    assert "stated error of the eccentricity" in said.err
+    assert "stated error of the eccentricity" in text
 
 
 def test_a_variant_that_ends_early_is_exit_3(capsys: pytest.CaptureFixture[str]) -> None:
     words = ["--theory", "short", "--cavitation", f"{HALF},{FULL}", "--no-picture", "--json"]
     assert frb(["compare", "jeffcott", *SETTINGS, *words, "--set", "contact.eccentricity=0.75"]) == 3
     said = capsys.readouterr()
+    words.remove("--json")
+    assert frb(["compare", "jeffcott", *SETTINGS, *words, "--set", "contact.eccentricity=0.75"]) == 3
+    text = capsys.readouterr().out
     assert [result["status"] for result in json.loads(said.out)["results"]] == ["finished", "contact"]
-    assert "sommerfeld short: contact at" in said.err
+    assert "sommerfeld short: contact at" in text
 
 
 @pytest.mark.parametrize(

@@ -30,7 +30,7 @@ BASE = ["film.theory=short", "speed.duration=4 s", "accuracy.target=0.01", "roto
 TRUE = {"bearing.clearance": 38.3e-6, "oil.viscosity": 10.4e-3}
 NOISE_um = 0.3
 OTHER_TABLES = ("accuracy", "output", "speed", "start", "motion")
-COLUMNS = ["--x", "x", "--y", "y", "--time", "t", "--speed", "n", "--clearance", "35 um"]
+COLUMNS = ["--x", "x", "--y", "y", "--time", "t", "--speed-column", "n", "--clearance", "35 um"]
 
 
 @pytest.fixture(scope="module")
@@ -151,7 +151,7 @@ def test_the_commands(folder: Path, found: Fit, monkeypatch: pytest.MonkeyPatch)
     assert (folder / "run-measured.png").stat().st_size > 20_000
     settings = [word for setting in BASE for word in ("--set", setting)]
     words = ["fit", "jeffcott", *settings, "--measured", "measured.csv", *COLUMNS, "--vary", "bearing.clearance"]
-    limits = ["--bounds", "bearing.clearance=30 um,45 um", "--save", "found.toml", "--json"]
+    limits = ["--bounds", "bearing.clearance=30..45 um", "--save", "found.toml", "--json"]
     done = invoke(frb, [*words, *limits], catch_exceptions=False)
     assert done.exit_code == 0
     document = json.loads(done.stdout)

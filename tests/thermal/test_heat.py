@@ -176,7 +176,7 @@ def test_heat_is_told_in_words(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert frb(["check", str(file)]) == 0
     told = capsys.readouterr().out
     assert "heat at the top speed" in told
-    assert "W with the oil" in told
+    assert "W leave with the oil" in told
 
 
 # --- closed forms ----------------------------------------------------------------------------------------------------

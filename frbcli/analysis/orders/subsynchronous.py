@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, Literal
 
@@ -269,6 +269,33 @@ def whirl_names(events: Sequence[Mapping[str, Any]]) -> list[str]:
 def with_whirl_names(events: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """The events, each with the name of its whirl as "whirl", which tables and pictures show."""
     return [{**event, "whirl": name} for event, name in zip(events, whirl_names(events), strict=True)]
+
+
+@dataclass(frozen=True)
+class WhirlSpan:
+    """A whirl of a run from its events: name, as Sub 1, "" where one has none; film: where it is driven, or the point
+    that shows it; begin, locked, end: its events, None where it does not lock in or lasts until the end."""
+
+    name: str
+    film: str
+    begin: Mapping[str, Any]
+    locked: Mapping[str, Any] | None = None
+    end: Mapping[str, Any] | None = None
+
+
+def whirls(events: Sequence[Mapping[str, Any]]) -> list[WhirlSpan]:
+    """All whirls of a run in the order in which they begin; those of a film end in this order, too."""
+    spans: list[WhirlSpan] = []
+    for event in with_whirl_names(events):
+        film = str(event.get("film") or event.get("point") or "")
+        own = [number for number, whirl in enumerate(spans) if whirl.film == film and whirl.end is None]
+        if event["kind"] == "onset":
+            spans.append(WhirlSpan(event["whirl"], film, event))
+        elif event["kind"] == "lock-in" and own:
+            spans[own[-1]] = replace(spans[own[-1]], locked=event)
+        elif event["kind"] == "offset" and own:
+            spans[own[0]] = replace(spans[own[0]], end=event)
+    return spans
 
 
 def _follow(spectra: Iterator[list[tuple[float, float]]], window_s: float) -> list[_Ridge]:

@@ -1,6 +1,6 @@
 """Rules that tie the keys of elements together, see checks.py.
 
-Those of elements without a film, of cases without any film, of a cartridge, its two places and its body, of inertias
+Checks of elements without a film, of cases without any film, of a cartridge, its two places and its body, of inertias
 and pins of rings, and of thrust bearings.
 """
 

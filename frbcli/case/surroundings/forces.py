@@ -254,7 +254,7 @@ class Spring(MachineTable):
     def _law_breaches(self, path: Path) -> Iterator[Breach]:
         """What is wrong with a law that was added from Python, or with its numbers."""
         for key in sorted(self.model_fields_set - {"at", "between", "law", "numbers"}):
-            yield Breach((*path, key), "has no effect beside a law.", "Remove it.")
+            yield Breach((*path, key), "has no effect with a law.", "Remove it.")
         kind = own_laws().get(self.law)
         if kind is None:
             known = ", ".join(own_laws()) or "none"

@@ -7,15 +7,15 @@ from pathlib import Path
 import click
 
 from frbcli.cli.common import SETTING, Terminal, output_options
-from frbcli.cli.files import OUTPUT, check_outputs, force_option, forced
-from frbcli.cli.options import complete_key
+from frbcli.cli.files import CASE_FILE, check_outputs, force_option, forced
+from frbcli.cli.options import Command, complete_key
 
 
-@click.command()
+@click.command(cls=Command)
 @click.argument("names", nargs=-1, metavar="[NAME]...")
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", shell_complete=complete_key,
-              help=f"{SETTING} Repeatable. [the text with its comments]")
-@click.option("-o", "--output", type=OUTPUT, help="Copy the case to this file.")
+              help=f"{SETTING} Repeatable.")
+@click.option("-o", "--output", metavar="CASE.toml", type=CASE_FILE, help="Copy the case to this file.")
 @click.option("--hard", is_flag=True, help="List the hard cases instead of the others.")
 @force_option("Replace a file at -o.")
 @output_options

@@ -9,6 +9,7 @@ import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.machines.static_tables import heat_document, reduction_document, show_heat, show_reduction
+from frbcli.cli.options import Command
 from frbcli.columns import document, documents, table_of
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ UNTRIED = "; frb check measures it on the machine itself when its kernels are co
 BY_CELLS_WITH_RINGS = "machines with rings have 0.1 to 8 times the error of their cells"
 
 
-@click.command()
+@click.command(cls=Command)
 @case_argument
 @click.option("--all", "everything", is_flag=True, help="Show all values of the case in SI, too.")
 @output_options

@@ -5,9 +5,10 @@ from __future__ import annotations
 import click
 
 from frbcli.cli.common import Terminal, output_options
+from frbcli.cli.options import Command
 
 
-@click.command()
+@click.command(cls=Command)
 @output_options
 def command(terminal: Terminal) -> None:  # noqa: ARG001  # every command takes --json; this one prints JSON anyway
     """Print the JSON Schema of a case file: editors complete and check case files with it."""

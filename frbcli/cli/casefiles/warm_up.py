@@ -5,15 +5,16 @@ from __future__ import annotations
 import click
 
 from frbcli.cli.common import SETTING, Terminal, output_options
-from frbcli.cli.options import complete_case, complete_key
+from frbcli.cli.options import Command, complete_case, complete_key
 from frbcli.cli.progress import display
 
 
-@click.command()
+@click.command(cls=Command)
 @click.argument("sources", nargs=-1, metavar="[CASE]...", shell_complete=complete_case)
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", shell_complete=complete_key,
               help=f"{SETTING} Repeatable.")  # fmt: skip
-@click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Processes. [one for each core]")
+@click.option("--jobs", type=click.IntRange(min=1), metavar="N", show_default="one for each core",
+              help="Processes.")  # fmt: skip
 @output_options
 def command(sources: tuple[str, ...], settings: tuple[str, ...], jobs: int | None, terminal: Terminal) -> None:
     """Compile the kernels of CASE, or of all shipped cases, once, on all cores: for run-ups, stability, bearing sheets

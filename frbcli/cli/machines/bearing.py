@@ -3,14 +3,15 @@ film the sheet of these."""
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.files import OUTPUT, forced, here
-from frbcli.cli.options import LOAD_OPTION, REST_OPTION, speeds_option
+from frbcli.cli.files import CASE_FILE, forced, here
+from frbcli.cli.options import LOAD_OPTION, REST_OPTION, Command, film_option, speeds_option
 from frbcli.cli.outputs import OutputOptions, outputs_options
 from frbcli.cli.progress import computing, display
 from frbcli.errors import NotConverged
@@ -18,11 +19,16 @@ from frbcli.errors import NotConverged
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import pandas as pd
+
     from frbcli.case.schema import Case
-    from frbcli.linear.sheets.ball import BallSheet
+    from frbcli.linear.sheets.ball import BallSheet, BallState
     from frbcli.linear.sheets.bearing import BearingSheet
     from frbcli.linear.sheets.film_state import FilmState
 
+Item = TypeVar("Item")
+MACHINE = ("film", "eps", "h, um", "p, bar", "film, degC", "loss, W", "flow, l/min", "err. of K, C")
+LITRES_PER_MINUTE, ZERO_CELSIUS = 6e4, 273.15  # of a m^3/s; K
 FEW_POINTS, SCREEN_ROWS = 2, 8  # points that are always shown in full; rows of all films on one screen
 EXPLANATION = (
     "{}. Errors of stiffness and damping are over their largest entry. The rise is with {:.4g} kg/m^3 and "
@@ -37,18 +43,18 @@ PRESSED = (
 )
 
 
-@click.command()
+@click.command(cls=Command)
 @case_argument
 @click.option("--over", type=click.Choice(["speed", "eccentricity"]), default="speed", show_default=True,
-              help="Number that is varied; over the eccentricity the load is computed.")  # fmt: skip
+              help="Horizontal axis; over the eccentricity the load is computed.")  # fmt: skip
 @speeds_option("20 over the range; with --over eccentricity the highest", REST_OPTION)
 @click.option("--load", "loads", type=LOAD_OPTION, multiple=True, metavar="LOAD",
-              help='Load along -y on a single film, e.g. "30 N"; repeatable, on each of ball bearings. '
-              "[the rotor's]")  # fmt: skip
-@click.option("--ross", metavar="FILE", type=OUTPUT,
+              show_default="the rotor's",
+              help='Load along -y on a single film, e.g. "30 N"; repeatable, on each of ball bearings.')  # fmt: skip
+@click.option("--ross", metavar="FILE.toml", type=CASE_FILE,
               help="Write stiffness and damping over speed as ROSS reads them, a file per film.")  # fmt: skip
-@click.option("--film", metavar="FILM", default=None, help="Show this film alone, with all of its numbers.")
-@click.option("--all", "everything", is_flag=True, help="Show K, C and all speeds of all films. [a short sheet]")
+@film_option("Show this film alone, with all of its numbers.", "all")
+@click.option("--all", "everything", is_flag=True, help="Show K, C and all speeds of all films.")
 @outputs_options("CASE-bearing.png, here")
 @output_options
 def command(
@@ -87,7 +93,7 @@ def command(
         else:
             sheet = sommerfeld_chart(case, speed_Hz=speeds[0] if speeds else None, observe=shown.counting())
     _show(terminal, sheet, (film,) if film is not None else sheet.films, everything or film is not None)
-    _write_ross(terminal, sheet, elements)
+    _write_ross(terminal, sheet.to_pandas(), elements)
     terminal.emit(
         {
             "command": "bearing",
@@ -130,30 +136,40 @@ def _ross_files(case: Case, ross: Path | None) -> dict[str, Path]:
     return ross_files(ross, [place.name for place in bearing_films(case)])
 
 
-def _write_ross(terminal: Terminal, sheet: BearingSheet, elements: dict[str, Path]) -> None:
+def _write_ross(terminal: Terminal, table: pd.DataFrame, elements: dict[str, Path]) -> None:
+    """table: with a column "film", of ball bearings their names."""
     from frbcli.results.export import write_ross
 
-    table = sheet.to_pandas()
     for film, path in elements.items():
         write_ross(table[table["film"] == film], path, forced())
         terminal.result(f"ROSS: {path}")
+
+
+def _show_problems(terminal: Terminal, points: Sequence[FilmState] | Sequence[BallState]) -> None:
+    problems = [point for point in points if point.problem]
+    if problems:
+        terminal.result(f"No state at {len(problems)} of {len(points)} points. The first: {problems[0].problem}")
 
 
 def _show(terminal: Terminal, sheet: BearingSheet, films: Sequence[str], full: bool) -> None:
     """The sheets of some films; not full: without matrices, at so many of the points as fill a screen, unless there are
     few of them."""
     from frbcli.columns import legend, table_of, with_speeds_in
-    from frbcli.film.cavitation.table import law_named
     from frbcli.linear.columns import FILMS, MATRICES, MIXED, WARM
     from frbcli.linear.sheets.film_state import heat_capacity
 
+    if len(films) > 1:
+        _show_machine(terminal, sheet, full)
+        if not full:
+            _show_notes(terminal, sheet)
+            return
     columns, points = with_speeds_in(terminal.speeds, sheet.columns), len(sheet.of(films[0]))
     full = full or points <= FEW_POINTS
-    rows = points if full else max(FEW_POINTS, SCREEN_ROWS // len(films))
+    rows = points if full else SCREEN_ROWS
     for film, label in zip(sheet.films, sheet.labels, strict=True):
         if film not in films:
             continue
-        name = " ".join(filter(None, (sheet.case.heading, film)))
+        name = " ".join(filter(None, (sheet.case.heading, film.replace("_", " "))))
         warm = {} if sheet.case.heat is None else {WARM: "film when everything is warm"}
         mixed = {MIXED: "mixed friction"} if sheet.case.contact.rough else {}
         matrices = dict(zip(MATRICES, ("stiffness K in N/um", "damping C in N s/mm"), strict=True))
@@ -164,21 +180,56 @@ def _show(terminal: Terminal, sheet: BearingSheet, films: Sequence[str], full: b
     if sheet.case.contact.rough:
         terminal.sentence(f"{legend(columns, MIXED)}.")
     if not full:
-        one = f", --film {films[0]} one film" if len(films) > 1 else ""
-        terminal.sentence(f"--all shows stiffness K, damping C and all {points} points{one}.")
+        terminal.sentence(f"--all shows stiffness K, damping C and all {points} points.")
+    _show_notes(terminal, sheet)
+
+
+def _show_notes(terminal: Terminal, sheet: BearingSheet) -> None:
+    """What limits the numbers: settled oil, films pressed into their shell, points without a state."""
+    from frbcli.film.cavitation.table import law_named
+
     if any(law_named(law).keeps_oil for law in sheet.laws):
         terminal.sentence(SETTLED)
     if sheet.pressed:
         state = max(sheet.pressed, key=lambda each: each.error)
-        film = f"The film {state.film}" if state.film else "The film"
+        film = f"The film {state.film.replace('_', ' ')}" if state.film else "The film"
         terminal.sentence(PRESSED.format(film, 1e6 * state.film_thickness_min, sheet.case.contact.eccentricity))
-    problems = [point for point in sheet.points if point.problem]
-    if problems:
-        terminal.result(f"No state at {len(problems)} of {len(sheet.points)} points. The first: {problems[0].problem}")
+    _show_problems(terminal, sheet.points)
 
 
-def _spread(states: Sequence[FilmState], rows: int) -> list[FilmState]:
-    """At most so many of the states, evenly spread, with the first and the last one."""
+def _show_machine(terminal: Terminal, sheet: BearingSheet, full: bool) -> None:
+    """Of several films: a table for each speed with a line for each film and the sum; not full: at few speeds."""
+    speeds = list(dict.fromkeys(state.speed_Hz for state in sheet.points))
+    shown = speeds if full else _spread(speeds, max(FEW_POINTS, SCREEN_ROWS // len(sheet.films)))
+    bearings = 2 if sheet.case.rotor is not None and sheet.case.rotor.symmetric else 1
+    for speed in shown:
+        states = [state for state in sheet.points if state.speed_Hz == speed]
+        rows = [_machine_row(state) for state in states]
+        loss, flow = (bearings * sum(value for value in values if not math.isnan(value))
+                      for values in ([s.power for s in states], [s.side_flow for s in states]))  # fmt: skip
+        whole = "machine, both bearings" if bearings > 1 else "machine"
+        rows.append((whole, *[""] * 4, f"{loss:.4g}", f"{LITRES_PER_MINUTE * flow:.3g}", ""))
+        title = f"{sheet.case.heading} at {terminal.speeds.words(speed)}"
+        terminal.table(title, MACHINE, rows)
+        rings = {state.film.rpartition("_")[0] or "ring": state.shell_speed_Hz / speed for state in states
+                 if speed and state.shell_speed_Hz and state.film.endswith("inner")}  # fmt: skip
+        if rings:
+            ratios = ", ".join(f"{name.replace('_', ' ')} {ratio:.3f}" for name, ratio in rings.items())
+            terminal.sentence(f"Ring speed over rotor speed: {ratios}.")
+    if len(shown) < len(speeds):
+        terminal.sentence(f"{len(shown)} of {len(speeds)} speeds; --all shows all, with stiffness K and damping C.")
+    terminal.sentence("h: smallest film thickness; p: largest absolute pressure. --film FILM shows one film in full.")
+
+
+def _machine_row(state: FilmState) -> tuple[str, ...]:
+    warm = "-" if math.isnan(state.temperature) else f"{state.temperature - ZERO_CELSIUS:.1f}"
+    numbers = (f"{state.eccentricity:.3f}", f"{1e6 * state.film_thickness_min:.3g}", f"{1e-5 * state.p_max:.3g}", warm,
+               f"{state.power:.4g}", f"{LITRES_PER_MINUTE * state.side_flow:.3g}", f"{state.error:.0e}")  # fmt: skip
+    return (state.film.replace("_", " "), *("-" if number == "nan" else number for number in numbers))
+
+
+def _spread(states: Sequence[Item], rows: int) -> list[Item]:
+    """At most so many of the states or speeds, evenly spread, with the first and the last one."""
     if len(states) <= rows:
         return list(states)
     return [states[round(number * (len(states) - 1) / (rows - 1))] for number in range(rows)]
@@ -201,7 +252,7 @@ def ball_sheet(
     with display(terminal) as shown:
         sheet = ball_bearing_sheet(case, speeds or None, loads, shown.counting())
     _show_balls(terminal, sheet)
-    _write_ball_ross(terminal, sheet, elements)
+    _write_ross(terminal, sheet.to_pandas().rename(columns={"bearing": "film"}), elements)
     terminal.emit(
         {
             "command": "bearing",
@@ -224,15 +275,5 @@ def _show_balls(terminal: Terminal, sheet: BallSheet) -> None:
         for table, title in titles.items():
             terminal.show(title, table_of(BALL_SHEET, states), table)
     terminal.sentence(f"{legend(BALL_SHEET, BALLS)}. All per bearing, with one ball in the line of the load.")
-    problems = [point for point in sheet.points if point.problem]
-    if problems:
-        terminal.result(f"No state at {len(problems)} of {len(sheet.points)} points. The first: {problems[0].problem}")
+    _show_problems(terminal, sheet.points)
 
-
-def _write_ball_ross(terminal: Terminal, sheet: BallSheet, elements: dict[str, Path]) -> None:
-    from frbcli.results.export import write_ross
-
-    table = sheet.to_pandas().rename(columns={"bearing": "film"})
-    for name, path in elements.items():
-        write_ross(table[table["film"] == name], path, forced())
-        terminal.result(f"ROSS: {path}")

@@ -12,7 +12,7 @@ import click
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import here
 from frbcli.cli.machines.static_tables import film_document, show_film
-from frbcli.cli.options import cavitation_option
+from frbcli.cli.options import Command, cavitation_option
 from frbcli.cli.outputs import OutputOptions, outputs_options
 from frbcli.cli.progress import computing
 from frbcli.errors import INTERRUPTED, NotConverged
@@ -27,7 +27,7 @@ LARGEST = "Values are from the moment of the largest force."
 def _command(test: str, description: str) -> Callable[..., Any]:
     """The command of a test."""
 
-    @click.command(help=description)
+    @click.command(cls=Command, help=description)
     @case_argument
     @cavitation_option
     @outputs_options(f"CASE-{test}.png, here")

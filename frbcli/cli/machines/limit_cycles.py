@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,7 +10,7 @@ import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import INPUTS, here
-from frbcli.cli.options import gathered, speeds_option
+from frbcli.cli.options import KEY_RANGE, Command, KeyRange, speeds_option
 from frbcli.cli.outputs import OutputOptions, Outputs, outputs_options
 from frbcli.cli.progress import Display, computing
 from frbcli.columns import document, documents, table_of
@@ -28,51 +27,27 @@ ASKED = "asked"
 KINDS = {"hopf": "Hopf points", "fold": "folds"}
 
 
-@dataclass(frozen=True)
-class Range:
-    """The keys that are varied instead of the speed or in addition to it, see the options of the command."""
-
-    over: str
-    key: str | None
-    low: str | None
-    high: str | None
-    and_low: str | None
-    and_high: str | None
-    points: int
-
-    @property
-    def second(self) -> tuple[str, str, str] | None:
-        """The key of --and and its range; with the speed as the first variable, the range is --from and --to."""
-        low, high = (self.low, self.high) if self.over == "speed" else (self.and_low, self.and_high)
-        return None if self.key is None or low is None or high is None else (self.key, low, high)
-
-
-@click.command()
+@click.command(cls=Command)
 @case_argument
 @speeds_option("those in the diagram; at given ones the cycles have their orbits")
-@click.option("--over", default="speed", metavar="KEY",
-              help="A number of the case instead of the speed; the speed is --speed or speed.to. [speed]")  # fmt: skip
-@click.option("--and", "key", metavar="KEY",
-              help="Draw a map: curves of Hopf points and folds over --over and this key, "
-                   "e.g. bearing.clearance.")  # fmt: skip
-@click.option("--from", "low", metavar="VALUE", help="Lowest value of --over or --and, with its unit, e.g. '30 um'.")
-@click.option("--to", "high", metavar="VALUE", help="Highest value of --over or --and.")
-@click.option("--and-from", "and_low", metavar="VALUE", help="Lowest value of --and, with --over KEY.")
-@click.option("--and-to", "and_high", metavar="VALUE", help="Highest value of --and, with --over KEY.")
-@click.option("--points", type=click.IntRange(2, 500), default=3,
-              help="Number of values of --and at which starting diagrams are computed; the curves begin "
-                   "there. [3]")  # fmt: skip
+@click.option("--over", type=KEY_RANGE, metavar="KEY=LOW..HIGH", show_default="the speed of CASE",
+              help="Horizontal axis: a number of CASE, e.g. bearing.clearance='30..45 um', at --speed.")  # fmt: skip
+@click.option("--and", "second", type=KEY_RANGE, metavar="KEY=LOW..HIGH",
+              help="Draw a map: curves of Hopf points and folds over --over and this number.")  # fmt: skip
+@click.option("--points", type=click.IntRange(2, 500), metavar="N", default=3, show_default=True,
+              help="Number of values of --and at which curves are sought.")  # fmt: skip
 @click.option("--with-unbalance", is_flag=True,
               help="Compute, too, the whirls that lock in with the unbalance at half the speed.")  # fmt: skip
 @click.option("--runs", type=INPUTS, default=(), metavar="UP.h5,DOWN.h5",
               help="Draw the eccentricities of runs of CASE over the diagram.")  # fmt: skip
 @outputs_options("CASE-limit-cycles.png, here")
 @output_options
-@gathered("varied", Range)
 def command(
     case: Case,
     speeds: tuple[float, ...],
-    varied: Range,
+    over: KeyRange | None,
+    second: KeyRange | None,
+    points: int,
     with_unbalance: bool,
     runs: tuple[Path, ...],
     outputs: OutputOptions,
@@ -85,24 +60,19 @@ def command(
     """
     from frbcli.cycles.limit_cycles import limit_cycles, limit_cycles_over
 
-    _check_range(varied)
-    over, key, low, high = varied.over, varied.key, varied.low, varied.high
-    along_speed = over == "speed"
-    if ((key is not None or not along_speed) and (len(speeds) > 1 or runs)) or (key and along_speed and speeds):
+    if ((over or second) and (len(speeds) > 1 or runs)) or (second and not over and speeds):
         raise click.UsageError("--runs and several --speed are of the diagram of one case over its speed.")
-    if with_unbalance and (key is not None or not along_speed):
+    if with_unbalance and (over or second):
         raise click.UsageError("--with-unbalance is of the diagram over the speed.")
-    drawn = "limit-cycles" if key is None else "stability-map"
-    places = outputs.check(here(case.name, f"-{drawn}.png"))
+    places = outputs.check(here(case.name, "-stability-map.png" if second else "-limit-cycles.png"))
     at = speeds[0] if speeds else case.speed.end
-    if varied.second is not None:
-        across = None if along_speed or low is None or high is None else (over, low, high, at)
-        _map(terminal, case, (*varied.second, varied.points), across, places)
+    if second is not None:
+        _map(terminal, case, second, points, None if over is None else (over.key, over.low, over.high, at), places)
         return
     tracks = [track for name in runs for track in _tracks(name)]
     with computing(terminal, case, kernels=_kernels(case)) as shown:
-        if not along_speed and low is not None and high is not None:
-            diagram = limit_cycles_over(case, over, low, high, at, _showing(shown))
+        if over is not None:
+            diagram = limit_cycles_over(case, over.key, over.low, over.high, at, _showing(shown))
         else:
             diagram = limit_cycles(case, speeds, _showing(shown), with_unbalance)
     _show(terminal, diagram)
@@ -121,28 +91,21 @@ def _figure(diagram: LimitCycles, tracks: list[RunTrack]) -> Picture:
     return limit_cycles_figure(diagram, tracks)
 
 
-def _check_range(varied: Range) -> None:
-    other, map_ = varied.over != "speed", varied.key is not None
-    if (other or map_) != (varied.low is not None and varied.high is not None):
-        raise click.UsageError("--over KEY and --and KEY go with --from VALUE and --to VALUE.")
-    if (other and map_) != (varied.and_low is not None and varied.and_high is not None):
-        raise click.UsageError("--and-from and --and-to are the range of --and KEY with --over KEY, both or none.")
-
-
 def _map(
     terminal: Terminal,
     case: Case,
-    second: tuple[str, str, str, int],
+    second: KeyRange,
+    points: int,
     first: tuple[str, str, str, float] | None,
     places: Outputs,
 ) -> None:
-    """Map over the speed or a first number (key, from, to, speed in Hz), and a second one (key, from, to, points)."""
+    """Map over the speed or a first number (key, from, to, speed in Hz), and a second one, with starting points."""
     from frbcli.cycles.stability_map import Across, stability_map
     from frbcli.scene.films import film_places
 
     across = None if first is None else Across(*first)
     with computing(terminal, case, kernels=_kernels(case)) as shown:
-        chart = stability_map(case, *second, shown.counting(), across)
+        chart = stability_map(case, second.key, second.low, second.high, points, shown.counting(), across)
     _show_map(terminal, chart)
     names = tuple(place.name for place in film_places(case))
     written = places.write(terminal, chart)

@@ -13,7 +13,7 @@ from frbcli.arrays import Array
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import INPUT, here
 from frbcli.cli.machines.static_tables import reduction_document, show_coefficient_error, show_reduction
-from frbcli.cli.options import OPERATING_OPTION, GradeOption, speeds_option
+from frbcli.cli.options import OPERATING_OPTION, Command, GradeOption, speeds_option
 from frbcli.cli.outputs import OutputOptions, outputs_options, picture_of
 from frbcli.cli.progress import computing
 from frbcli.errors import Fault, InputError
@@ -31,14 +31,13 @@ if TYPE_CHECKING:
 
 MOST_SPEEDS, MOST_POINTS = 20, 4  # of the table; JSON, CSV and the picture have all
 EXPLANATION = (
-    "um: larger semi-axis of the orbit; deg: phase of the forward motion to the\n"
-    "{angle}; growth: of the least damped whirl in 1/s, which hides the\n"
-    "rest where it is above 0; eps: largest eccentricity of a journal on its orbit."
+    "um: larger semi-axis of the orbit; deg: phase of the forward motion to the {angle}; growth: growth rate of the "
+    "least damped mode, 1/s, unstable above 0; eps: largest eccentricity of a journal on its orbit."
 )
 MARKS = {"linear": "", "doubtful": " ?", "beyond-gap": " !"}  # behind eps
 
 
-@click.command()
+@click.command(cls=Command)
 @case_argument
 @speeds_option("120 over the range of CASE")
 @click.option("--run", "run_file", type=INPUT, metavar="RUN.h5",
@@ -46,9 +45,9 @@ MARKS = {"linear": "", "doubtful": " ?", "beyond-gap": " !"}  # behind eps
 @click.option("--map", "as_map", is_flag=True,
               help="Draw the undamped critical speed map, over the stiffness of the bearings.")  # fmt: skip
 @click.option("--excitation", default="unbalance", metavar="LOAD",
-              help='The one load that excites the rotor, e.g. "force 2" or "bow". '
-                   "[the unbalance and all loads of order 1]")  # fmt: skip
-@click.option("--after-loss", is_flag=True, help="With the unbalance after the losses of CASE. [before them]")
+              show_default="the unbalance and all loads of order 1",
+              help='The one load that excites the rotor, e.g. "force 2" or "bow".')  # fmt: skip
+@click.option("--after-loss", is_flag=True, help="With the unbalance after the losses of CASE.")
 @click.option("--operating", type=OPERATING_OPTION, metavar="RANGE",
               help='Speeds of operation, whose vibration is judged, e.g. "8000..12000 rpm".')  # fmt: skip
 @click.option("--grade", type=GradeOption(), metavar="GRADE",
@@ -165,7 +164,7 @@ def _show(terminal: Terminal, motion: Response, reduced: Reduction | None, every
         rest = ", ".join(name.replace("_", " ") for name in motion.points[len(shown) :])
         terminal.result(f"{rest}: in the picture, --csv and --json.")
     explanation = EXPLANATION if in_films else EXPLANATION.partition("; eps")[0] + "."
-    terminal.result(explanation.format(angle=motion.angle))
+    terminal.sentence(explanation.format(angle=motion.angle))
     show_reduction(terminal, reduced)
     for sentence in _excitation(motion):
         terminal.sentence(sentence)

@@ -22,7 +22,7 @@ from frbcli.cli.machines.static_tables import (
     show_points,
     show_reduction,
 )
-from frbcli.cli.options import REST_OPTION, SPEED_OPTION, STIFFNESS_OPTION, speeds_option
+from frbcli.cli.options import REST_OPTION, SPEED_OPTION, STIFFNESS_OPTION, Command, speeds_option
 from frbcli.cli.outputs import OutputOptions, outputs_options, picture_of
 from frbcli.cli.progress import computing
 from frbcli.columns import document, documents, table_of
@@ -45,12 +45,12 @@ LONGEST_TABLE = 13  # rows of the text
 LISTED = 3  # slowest modes of each direction
 
 
-@click.command()
+@click.command(cls=Command)
 @case_argument
 @speeds_option("60 over the range of CASE", REST_OPTION)
 @click.option("--threshold", "with_threshold", is_flag=True,
               help="Seek the threshold over the range of CASE, in addition to the speeds of --speed.")  # fmt: skip
-@click.option("--modes", "--stiffness", "stiffness", type=STIFFNESS_OPTION, metavar="STIFFNESS",
+@click.option("--modes", "stiffness", type=STIFFNESS_OPTION, metavar="STIFFNESS",
               help='Only undamped natural frequencies of the rotor, from 0 Hz on: "free", on "bearings" of given '
                    'coefficients, or on a stiffness of e.g. "5e6 N/m".')  # fmt: skip
 @click.option("--shapes", type=SPEED_OPTION, metavar="SPEED",

@@ -80,7 +80,7 @@ def _film_lines(point: StabilityPoint, speed: str) -> list[tuple[str, ...]]:
         return [(speed, NONE, *[""] * 5)]
     count = max(len(point.films), len(point.growing))
     places = table_of(FILM, point.films).cells(STABILITY)
-    films = [(film.name, *place) for film, place in zip(point.films, places, strict=True)]
+    films = [(film.name.replace("_", " "), *place) for film, place in zip(point.films, places, strict=True)]
     modes = table_of(MODES, point.modes_with_errors[:count]).cells(STABILITY)
     films += [("",) * 3] * (count - len(films))
     modes += [("",) * 3] * (count - len(modes))
@@ -169,11 +169,20 @@ def _show_films(terminal: Terminal, films: Sequence[FilmTemperature], title: str
     from frbcli.columns import table_of
     from frbcli.equilibrium.columns import WARM_FILMS
 
-    terminal.show(title, table_of(WARM_FILMS, films))
+    table = table_of(WARM_FILMS, films)
+    rows = table.cells()
+    if len(films) > 1:  # loss and flow
+        total = f"{sum(film.power for film in films):.4g}", f"{1e6 * sum(film.flow for film in films):.3g}"
+        rows.append(("all of them", *[""] * (len(rows[0]) - 3), *total))
+    terminal.table(title, table.heads(), rows)
+
+
+def _walls(given: float) -> str:
+    return f"{abs(given):.4g} W {'flow into' if given >= 0.0 else 'come from'} shaft and housing"
 
 
 def _show_balance(terminal: Terminal, steady: SteadyHeat) -> None:
     terminal.result(
-        f"Heat: {steady.carried:.4g} W with the oil, {steady.given:.4g} W into shaft and housing, "
-        f"unaccounted for {steady.balance:.0e}."
+        f"Heat: {steady.carried:.4g} W leave with the oil, {_walls(steady.given)}; "
+        f"{steady.balance:.0e} of it unaccounted for."
     )

@@ -8,7 +8,7 @@ import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import here
-from frbcli.cli.options import LENGTH_OPTION, LOAD_OPTION, speeds_option
+from frbcli.cli.options import LENGTH_OPTION, LOAD_OPTION, Command, speeds_option
 from frbcli.cli.outputs import OutputOptions, outputs_options
 from frbcli.cli.progress import display
 
@@ -16,12 +16,13 @@ if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.linear.sheets.thrust import ThrustSheet
 
-@click.command()
+@click.command(cls=Command)
 @case_argument
 @click.option("--gap", "gaps", multiple=True, type=LENGTH_OPTION, metavar="GAP",
-              help='Gap over the lands, e.g. "12 um". Repeatable. [10 over the range, without --load]')  # fmt: skip
+              show_default="10 over the range, without --load",
+              help='Gap over the lands, e.g. "12 um". Repeatable.')  # fmt: skip
 @click.option("--load", "loads", multiple=True, type=LOAD_OPTION, metavar="LOAD",
-              help='Load whose gap is found, e.g. "40 N". Repeatable.')  # fmt: skip
+              help='Load, e.g. "40 N". Repeatable.')  # fmt: skip
 @speeds_option("the highest of CASE")
 @outputs_options("CASE-thrust.png, here")
 @output_options

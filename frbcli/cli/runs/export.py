@@ -9,29 +9,34 @@ import click
 
 from frbcli.cli.common import Terminal, output_options
 from frbcli.cli.files import INPUT, OUTPUT, check_outputs, force_option, forced, next_to
+from frbcli.cli.options import Command
 from frbcli.cli.progress import WRITING, display
 
 
-@click.command()
+@click.command(cls=Command)
 @click.argument("run_file", metavar="RUN.h5", type=INPUT)
 @click.option(
     "--format",
     "table_format",
-    type=click.Choice(["csv", "parquet", "mat"]),
-    default="csv",
-    show_default=True,
-    help="Format of the table; parquet needs the extra frbcli[parquet].",
+    type=click.Choice(["csv", "parquet", "mat", "xlsx"]),
+    show_default="as the name of -o ends, else csv",
+    help="Format of the table; parquet and xlsx need the extras frbcli[parquet] and frbcli[excel].",
 )
-@click.option("-o", "--output", metavar="FILE", type=OUTPUT, help='Table; "-" writes CSV to stdout. [RUN.FORMAT]')
+@click.option("-o", "--output", metavar="FILE", type=OUTPUT, show_default="RUN.FORMAT",
+              help='Table; "-" writes CSV to stdout.')  # fmt: skip
 @force_option()
 @output_options
-def command(run_file: Path, table_format: str, output: Path | None, terminal: Terminal) -> None:
+def command(run_file: Path, table_format: str | None, output: Path | None, terminal: Terminal) -> None:
     """Write the signals of RUN.h5, one column each."""
-    from frbcli.results.export import export_run, write_csv
+    from frbcli.results.export import FORMATS, export_run, write_csv
     from frbcli.results.files.write import TABLES
     from frbcli.results.store import read_run
 
     to_stdout = output == Path("-")
+    suffix = "" if output is None or to_stdout else output.suffix.lower()[1:]
+    table_format = table_format or suffix or "csv"
+    if suffix not in ("", table_format) or table_format not in FORMATS:
+        raise click.UsageError(f"{output} does not end with .{' or .'.join(FORMATS)}, as its format is called.")
     if to_stdout and (table_format != "csv" or terminal.json):
         raise click.UsageError("Only CSV goes to stdout, and not together with --json.")
     target = output or next_to(run_file, f".{table_format}")

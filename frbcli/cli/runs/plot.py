@@ -12,7 +12,7 @@ import click
 
 from frbcli.cli.common import SETTING, Terminal, output_options
 from frbcli.cli.files import INPUT, check_outputs, force_option, forced, here, next_to
-from frbcli.cli.options import TIME_OPTION, gathered, look_options, over_option, signal_option
+from frbcli.cli.options import TIME_OPTION, Command, film_option, gathered, look_options, over_option, signal_option
 from frbcli.cli.outputs import draw_wanted, picture_option
 from frbcli.cli.progress import display
 
@@ -42,10 +42,10 @@ class Times:
         return self.from_time, self.to_time
 
 
-@click.command()
+@click.command(cls=Command)
 @click.argument("run_files", metavar="RUN.h5...|CASE", type=INPUT, nargs=-1, required=True)
 @click.option("--what", metavar="SUBJECT", type=click.Choice(SUBJECTS), default="eccentricity", show_default=True,
-              help=f"One of {', '.join(SUBJECTS)}.")
+              help=f"Subject of the picture: {', '.join(SUBJECTS)}.")
 @click.option("--from", "from_time", metavar="TIME", type=TIME_OPTION, help='Start of the drawn time, e.g. "6.4 s".')
 @click.option("--to", "to_time", metavar="TIME", type=TIME_OPTION, help="End of the drawn time.")
 @over_option("time")
@@ -53,7 +53,7 @@ class Times:
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help=f"{SETTING} With --what law.")
 @click.option("--animate", is_flag=True,
               help="A moving picture of an orbit or a film: GIF, or MP4 where ffmpeg is installed.")  # fmt: skip
-@click.option("--film", metavar="NAME", help="The film of --what film, as in eccentricity_NAME. [the first one]")
+@film_option("The film of --what film.", "the first one")
 @picture_option("RUN-WHAT.png")
 @force_option()
 @look_options

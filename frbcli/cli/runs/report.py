@@ -7,19 +7,18 @@ from pathlib import Path
 import click
 
 from frbcli.cli.common import Terminal, output_options
-from frbcli.cli.files import INPUT, OUTPUT, check_outputs, force_option, forced, next_to
-from frbcli.cli.options import signal_option, speeds_option
+from frbcli.cli.files import INPUT, PAGE_FILE, check_outputs, force_option, forced, next_to
+from frbcli.cli.options import Command, signal_option, speeds_option
 from frbcli.cli.progress import drawing
 
 
-@click.command()
+@click.command(cls=Command)
 @click.argument("run_file", metavar="RUN.h5", type=INPUT)
-@click.option("-o", "--output", metavar="PAGE.html", type=OUTPUT, help="Page. [RUN-report.html]")
+@click.option("-o", "--output", metavar="PAGE.html", type=PAGE_FILE, show_default="RUN-report.html", help="Page.")
 @speeds_option("speeds at the events, and the last; orbits and spectra are drawn there")
 @signal_option()
 @click.option("--author", default="", metavar="NAME", help="Name on top of the page, next to date and version.")
-@click.option("--both-units", is_flag=True,
-              help="Rotor speeds in Hz and rpm. [rpm where the case gives them so, else Hz]")  # fmt: skip
+@click.option("--both-units", is_flag=True, show_default="as the case gives them", help="Rotor speeds in Hz and rpm.")
 @force_option()
 @output_options
 def command(

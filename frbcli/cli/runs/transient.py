@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options, wrapped
-from frbcli.cli.files import OUTPUT, check_outputs, force_option, here, next_to
-from frbcli.cli.options import gathered, look_options
+from frbcli.cli.files import RUN_FILE, check_outputs, force_option, here, next_to
+from frbcli.cli.options import Command, gathered, look_options
 from frbcli.cli.outputs import draw, picture_switch
 from frbcli.cli.progress import Display, LONGEST_LEFT_s, computing, display, progress_line
 from frbcli.columns import table_of
@@ -51,7 +51,9 @@ class RunOptions:
 
 def run_options(function: Function) -> Function:
     """Give a command the options of a run; it receives `options: RunOptions`."""
-    output = click.option("-o", "--output", type=OUTPUT, metavar="RUN.h5", help="Run file. [CASE.h5, here]")
+    output = click.option(
+        "-o", "--output", type=RUN_FILE, metavar="RUN.h5", show_default="CASE.h5, here", help="Run file."
+    )
     resume = click.option("--resume", is_flag=True, help="Resume an interrupted run in the run file.")
     force = force_option("Replace the run in the run file, and a picture that frb did not write.", exposed=True)
     verify = click.option(
@@ -67,7 +69,7 @@ def run_options(function: Function) -> Function:
     return output(resume(force(verify(explain(uncertainty(picture_switch(look_options(gathering))))))))
 
 
-@click.command()
+@click.command(cls=Command)
 @case_argument
 @run_options
 @output_options
@@ -78,7 +80,7 @@ def runup(case: Case, options: RunOptions, terminal: Terminal) -> int:
     return transient("runup", run.runup, case, options, terminal)
 
 
-@click.command()
+@click.command(cls=Command)
 @case_argument
 @run_options
 @output_options
@@ -217,6 +219,26 @@ def exit_code(status: str) -> int:
     return EXIT_CODES.get(status, ENDED_EARLY)
 
 
+def _show_whirls(run: Run, terminal: Terminal) -> None:
+    """Where there are several, a line for each whirl: from where to where, and how large over which clearance."""
+    from frbcli.analysis.orders.subsynchronous import SIDES, whirls
+    from frbcli.analysis.signals import bearing_clearance
+
+    seen, unit, rows = whirls(run.events), terminal.speeds, []
+    for whirl in seen if len(seen) > 1 else ():
+        bearing, _, side = whirl.film.rpartition("_")
+        room = bearing_clearance(run, bearing if side in SIDES else whirl.film)
+        size = whirl.begin.get("amplitude")
+        last = "end" if whirl.end is None else unit.number(whirl.end["speed_Hz"])
+        ratios = [event["frequency_ratio"] for event in (whirl.begin, whirl.end) if event is not None]
+        lengths = ("-", "-") if size is None or room is None else (f"{1e6 * size * room:.3g}", f"{1e6 * room:.3g}")
+        name, first = f"{whirl.name} {whirl.film.replace('_', ' ')}".strip(), unit.number(whirl.begin["speed_Hz"])
+        rows.append((name, first, last, " to ".join(f"{ratio:.2f}X" for ratio in ratios), *lengths))
+    if rows:
+        terminal.table("whirls", ("whirl", f"from, {unit.name}", f"to, {unit.name}", "frequency", "largest, um",
+                                  "of clearance, um"), rows)  # fmt: skip
+
+
 def _report(case: Case, run: Run, terminal: Terminal) -> None:
     """Status with its cause and remedy, events, cost and error, as text."""
     from frbcli.analysis.events import about_critical_speeds
@@ -233,6 +255,7 @@ def _report(case: Case, run: Run, terminal: Terminal) -> None:
         terminal.show("events", table_of(EVENTS, events))
         for sentence in about_certainty(events, run.cost, terminal.speeds):
             terminal.sentence(sentence)
+        _show_whirls(run, terminal)
     for sentence in about_critical_speeds(run, run.events, terminal.speeds):
         terminal.sentence(sentence)
     terminal.table("cost and error", ("", "", ""), account(run))

@@ -10,7 +10,7 @@ import click
 
 from frbcli.cli.common import Terminal, output_options
 from frbcli.cli.files import INPUT, check_outputs, force_option, next_to
-from frbcli.cli.options import TIME_OPTION, Numbers, Span, gathered, look_options, over_option, signal_option
+from frbcli.cli.options import TIME_OPTION, Command, Numbers, Span, gathered, look_options, over_option, signal_option
 from frbcli.cli.outputs import draw_wanted, picture_option
 from frbcli.cli.progress import READING, display
 from frbcli.cli.studies.measured import measured_options, run_of, show_columns
@@ -40,7 +40,7 @@ class View:
     lines: tuple[float, ...] | None
 
 
-@click.command()
+@click.command(cls=Command)
 @click.argument("run_file", metavar="RUN", type=INPUT)
 @picture_option("RUN-waterfall.png")
 @signal_option()
@@ -48,7 +48,7 @@ class View:
               help="Amplitudes by order instead of spectra; exact also in a ramp of the speed.")  # fmt: skip
 @over_option(None)
 @click.option("--cascade", is_flag=True, help="Curves behind each other, in 3-D.")
-@click.option("--window", type=TIME_OPTION, help="Length of one spectrum. [from the ramp, up to 0.2 s]")
+@click.option("--window", type=TIME_OPTION, show_default="from the ramp, up to 0.2 s", help="Length of one spectrum.")
 @click.option(
     "--direction",
     type=click.Choice(["x", "y", "forward"]),
@@ -57,10 +57,12 @@ class View:
     help="One coordinate, or the motion that turns with the rotor.",
 )
 @click.option("--log", is_flag=True, help="Logarithmic frequency axis; with --order logarithmic amplitudes.")
-@click.option("--levels", type=Span(), metavar="A,B", help="Range of the colours in dB, with --linear in um. [-60,0]")
+@click.option("--levels", type=Span(), metavar="A,B", show_default="-60,0",
+              help="Range of the colours in dB, with --linear in um.")  # fmt: skip
 @click.option("--linear", is_flag=True, help="Amplitudes in um instead of levels in dB.")
-@click.option("--lines", type=Numbers(), metavar="1,0.5", help="Orders whose lines are drawn. [orders of free whirls]")
-@click.option("--list", "listed", is_flag=True, help="List the columns of a measurement, with shapes and units.")
+@click.option("--lines", type=Numbers(), metavar="1,0.5", show_default="orders of free whirls",
+              help="Orders whose lines are drawn.")  # fmt: skip
+@click.option("--columns", "listed", is_flag=True, help="List the columns of a measurement, with shapes and units.")
 @measured_options
 @force_option()
 @look_options
@@ -79,7 +81,7 @@ def command(
     """Draw the spectra of RUN in dB relative to the clearance, over time or rotor speed; or, with --order, its
     amplitudes by order.
 
-    RUN is a run file, or a measurement as CSV, WAV, MAT or UFF, whose columns --x, --speed and so on name.
+    RUN is a run file, or a measurement as CSV, WAV, MAT or UFF, whose columns --x, --speed-column and so on name.
     """
     from frbcli.analysis.events import about_critical_speeds
     from frbcli.analysis.orders.subsynchronous import with_whirl_names

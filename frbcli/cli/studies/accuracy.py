@@ -9,7 +9,7 @@ import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import here
-from frbcli.cli.options import TIME_OPTION, coupling_option, theory_option
+from frbcli.cli.options import TIME_OPTION, Command, coupling_option, theory_option
 from frbcli.cli.outputs import OutputOptions, outputs_options
 from frbcli.cli.progress import computing
 from frbcli.columns import documents, short_number
@@ -20,9 +20,10 @@ if TYPE_CHECKING:
     from frbcli.studies.ladder import AccuracyLadder, RungResult
 
 
-@click.command()
+@click.command(cls=Command)
 @case_argument
-@click.option("--until", type=TIME_OPTION, metavar="TIME", help='End of the run, e.g. "2 s". [as in CASE]')
+@click.option("--until", type=TIME_OPTION, metavar="TIME", show_default="as in CASE",
+              help='End of the run, e.g. "2 s".')  # fmt: skip
 @theory_option("all that apply")
 @coupling_option
 @outputs_options("CASE-accuracy.png, here")

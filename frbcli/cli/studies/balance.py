@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Terminal, output_options
-from frbcli.cli.files import INPUT, OUTPUT, check_outputs, force_option, forced
-from frbcli.cli.options import SPEED_OPTION, Names
+from frbcli.cli.files import INPUT, check_outputs, force_option, forced
+from frbcli.cli.options import Command, Names, speeds_option
+from frbcli.cli.outputs import csv_option
 from frbcli.cli.progress import READING, computing, display
 from frbcli.cli.studies.measured import measured_options, run_of
 
@@ -51,20 +52,19 @@ class TrialOption(click.ParamType[tuple[str, Path, float, float]]):
         return plane.strip(), INPUT.convert(file.strip(), param, ctx), unbalance, degrees
 
 
-@click.command()
+@click.command(cls=Command)
 @click.argument("run_file", metavar="RUN", type=INPUT)
-@click.option("--planes", type=Names(), default=(), metavar="A,B",
-              help="Disks where masses can be added. [as in --trial]")  # fmt: skip
+@click.option("--planes", type=Names(), default=(), metavar="A,B", show_default="as in --trial",
+              help="Disks where masses can be added.")  # fmt: skip
 @click.option("--trial", "trials", multiple=True, type=TrialOption(), metavar="PLANE=FILE:UNBALANCE@ANGLE",
-              help=f"A run with a trial unbalance in a plane, e.g. {EXAMPLE}. Repeatable. "
-                   "[coefficients are computed for the case of RUN]")  # fmt: skip
-@click.option("--at", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED",
-              help='Rotor speed, e.g. "25 Hz". Repeatable. [that which RUN holds, or eight of its ramp]')  # fmt: skip
-@click.option("--probe", "points", multiple=True, metavar="POINT",
-              help="Point of the run that takes part, e.g. journal_left. Repeatable. [all of the shaft]")  # fmt: skip
+              show_default="coefficients are computed for the case of RUN",
+              help=f"A run with a trial unbalance in a plane, e.g. {EXAMPLE}. Repeatable.")  # fmt: skip
+@speeds_option("the one that RUN holds, or eight of its ramp")
+@click.option("--probe", "points", multiple=True, metavar="POINT", show_default="all of the shaft",
+              help="Point of the run that takes part, e.g. journal_left. Repeatable.")  # fmt: skip
 @click.option("--triggered", is_flag=True,
               help="Measurements without pulses began at the same angle of the rotor.")  # fmt: skip
-@click.option("--csv", metavar="FILE", type=OUTPUT, help="Write the table of all results as CSV, too.")
+@csv_option
 @force_option()
 @measured_options
 @output_options

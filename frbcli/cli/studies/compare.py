@@ -11,6 +11,7 @@ import click
 from frbcli.cli.common import Terminal, case_or_run_argument, output_options
 from frbcli.cli.files import INPUT, OUTPUT_FOLDER, here, next_to
 from frbcli.cli.options import (
+    Command,
     cavitation_option,
     coupling_option,
     gathered,
@@ -44,14 +45,14 @@ class Models:
     thermal: tuple[str, ...]
 
 
-@click.command()
+@click.command(cls=Command)
 @case_or_run_argument
 @cavitation_option
 @theory_option("as in CASE")
 @coupling_option
 @thermal_option
-@click.option("--test", default="runup", show_default=True, metavar="TEST",
-              help="The scene: runup, rundown, rotation, squeeze, whirl.")  # fmt: skip
+@click.option("--test", type=click.Choice(["runup", "rundown", "rotation", "squeeze", "whirl"]), default="runup",
+              show_default=True, help="The scene.")  # fmt: skip
 @click.option("--keep", metavar="DIR", type=OUTPUT_FOLDER, help="Keep the run files in this directory.")
 @click.option("--measured", "file", metavar="FILE", type=INPUT,
               help="A measured run-up to compare with RUN.h5: CSV, WAV or MAT, see --x.")  # fmt: skip

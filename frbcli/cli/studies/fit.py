@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.files import INPUT, OUTPUT, forced, here
-from frbcli.cli.options import Names, signal_option
+from frbcli.cli.files import CASE_FILE, INPUT, forced, here
+from frbcli.cli.options import KEY_RANGE, Command, KeyRange, Names, signal_option
 from frbcli.cli.outputs import OutputOptions, outputs_options
 from frbcli.cli.progress import READING, computing, display
 from frbcli.cli.studies.measured import measured_options, run_of
@@ -27,15 +27,16 @@ EXPLANATION = (
 POOR = 2.0  # times the scatter of the measurement: the case does not describe it
 
 
-@click.command()
+@click.command(cls=Command)
 @case_argument
 @click.option("--measured", "file", required=True, metavar="FILE", type=INPUT,
               help="A measured run-up: CSV, WAV or MAT, see --x; or a run.")  # fmt: skip
 @click.option("--vary", type=Names(), required=True, metavar="KEY,KEY", help="The numbers of CASE that are sought.")
-@click.option("--bounds", multiple=True, metavar="KEY=LOW,HIGH", help="Range of a number, in the units of CASE. "
-              "Repeatable. [a third to three times its value]")  # fmt: skip
+@click.option("--bounds", multiple=True, type=KEY_RANGE, metavar="KEY=LOW..HIGH",
+              show_default="a third to three times its value",
+              help="Range of a number, in the units of CASE. Repeatable.")  # fmt: skip
 @signal_option()
-@click.option("--save", metavar="CASE.toml", type=OUTPUT, help="Write the case with the numbers found.")
+@click.option("--save", metavar="CASE.toml", type=CASE_FILE, help="Write the case with the numbers found.")
 @measured_options
 @outputs_options("CASE-fit.png, here")
 @output_options
@@ -43,7 +44,7 @@ def command(
     case: Case,
     file: Path,
     vary: tuple[str, ...],
-    bounds: tuple[str, ...],
+    bounds: tuple[KeyRange, ...],
     signal: str,
     save: Path | None,
     measurement: Measurement | None,
@@ -97,21 +98,15 @@ def _show(terminal: Terminal, fitted: Fit) -> None:
         terminal.result("They are larger than the scatter: the case does not describe all of what was measured.")
 
 
-def _bounds(case: Case, given: tuple[str, ...]) -> dict[str, tuple[float, float]]:
+def _bounds(case: Case, given: tuple[KeyRange, ...]) -> dict[str, tuple[float, float]]:
     """Bounds by keys, in SI: each is read as a value of the case."""
     from frbcli.case.reading.listing import values
 
     bounds_of = {}
-    for text in given:
-        key, _, span = text.partition("=")
-        low, comma, high = span.partition(",")
-        if not comma:
-            raise click.UsageError(f"--bounds {text} is not of the form KEY=LOW,HIGH.")
-        read = []
-        for side in (low, high):
-            changed = case.with_settings(f"{key}={side.strip()}")
-            read.append(next((v.value for v in values(changed) if v.key == key), None))
-        if not all(isinstance(value, float) for value in read):
-            raise click.UsageError(f"--bounds {text}: {key} is no number of the case.")
-        bounds_of[key.strip()] = (float(read[0] or 0.0), float(read[1] or 0.0))
+    for span in given:
+        changed = (case.with_settings(f"{span.key}={end}") for end in (span.low, span.high))
+        low, high = (next((v.value for v in values(each) if v.key == span.key), None) for each in changed)
+        if not (isinstance(low, float) and isinstance(high, float)):
+            raise click.UsageError(f"--bounds {span.key} is no number of the case.")
+        bounds_of[span.key] = (low, high)
     return bounds_of

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from frbcli.results.store import Run
 
 _GIVEN = "frbcli.measurement"  # in the context of a command
-EITHER = (("time", "rate"), ("speed", "speed_at", "tacho"))  # options of which one is enough
+EITHER = (("time", "rate"), ("speed_column", "speed_at", "tacho"))  # options of which one is enough
 _UNITS = {kind: UnitOption(kind, unit, example) for kind, unit, example in
           (("length", "m", "um"), ("time", "s", "ms"), ("speed", "Hz", "rpm"))}  # fmt: skip
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -45,18 +45,21 @@ def measured_options(function: Function) -> Function:
         "y": ({"metavar": "COLUMN"}, "Column of the displacement in y; without it there are no events."),
         "time": ({"metavar": "COLUMN"}, "Column of the times."),
         "rate": ({"type": Rate()}, "Samples per second, without a column of times; or a number of the file, as fs."),
-        "speed": ({"metavar": "COLUMN"}, "Column of the rotor speed."),
+        "speed-column": ({"metavar": "COLUMN"}, "Column of the rotor speed."),
         "speed-time": ({"metavar": "COLUMN"}, "Column of the times of the rotor speed, where it has its own."),
         "speed-at": ({"metavar": "SPEED", "type": SPEED_OPTION}, 'A constant rotor speed, e.g. "100 Hz".'),
         "tacho": ({"metavar": "COLUMN"}, "Column of a signal with pulses, from which the rotor speed follows."),
-        "pulses": ({"type": click.IntRange(min=1), "default": 1, "show_default": True}, "Pulses per revolution."),
+        "pulses": (
+            {"type": click.IntRange(min=1), "metavar": "N", "default": 1, "show_default": True},
+            "Pulses per revolution.",
+        ),
         "slow-roll": (
             {"metavar": "SPEED", "type": SPEED_OPTION},
             'Subtract what turns with the rotor at this slow speed, e.g. "10 Hz": runout and bow. Needs --tacho.',
         ),
-        "unit": ({"type": _UNITS["length"]}, "Unit of the displacements. [of the file, or 1 um]"),
-        "time-unit": ({"type": _UNITS["time"]}, "Unit of the times. [of the file, or 1 s]"),
-        "speed-unit": ({"type": _UNITS["speed"]}, "Unit of the rotor speed. [of the file, or 1 Hz]"),
+        "unit": ({"type": _UNITS["length"], "show_default": "of the file, or 1 um"}, "Unit of the displacements."),
+        "time-unit": ({"type": _UNITS["time"], "show_default": "of the file, or 1 s"}, "Unit of the times."),
+        "speed-unit": ({"type": _UNITS["speed"], "show_default": "of the file, or 1 Hz"}, "Unit of the rotor speed."),
     }
     command: Any = function
     command = click.option("--clearance", "measurement", metavar="LENGTH", type=LENGTH_OPTION, callback=_measurement,
@@ -97,7 +100,7 @@ def _measurement(context: click.Context, _: click.Parameter, clearance: float | 
         y=given["y"],
         time=given["time"],
         rate=given["rate"],
-        speed=given["speed"],
+        speed=given["speed_column"],
         speed_Hz=given["speed_at"],
         tacho=given["tacho"],
         pulses=given["pulses"],
@@ -114,12 +117,12 @@ def run_of(path: Path, measurement: Measurement | None, terminal: Terminal, rela
     to a clearance. Raises as read_run and measured_run do."""
     from frbcli.results.measured.reading import READERS, read_columns
 
-    if not path.exists():
+    if not path.exists() and path.suffix.lower() in READERS:
         read_columns(path)  # which raises: a file that is not there is said before its options are
     if path.suffix.lower() in READERS:
         if measurement is None:
-            columns = f"`frb waterfall {path} --list` lists its columns."
-            raise click.UsageError(f"{path} is a measurement: say by --x COLUMN where its motion stands. {columns}")
+            columns = f"`frb waterfall {path} --columns` lists its columns."
+            raise click.UsageError(f"{path} is a measurement: name the column of its motion by --x COLUMN. {columns}")
         if measurement.clearance is None and relative:
             words = "A measurement needs --clearance, to which amplitudes refer; frb waterfall --linear does without."
             raise click.UsageError(words)

@@ -12,7 +12,7 @@ import click
 
 from frbcli.cli.common import Terminal, output_options
 from frbcli.cli.files import INPUT, OUTPUT_FOLDER, check_outputs, force_option, forced, here
-from frbcli.cli.options import SPEED_OPTION, complete_case, gathered, look_options
+from frbcli.cli.options import SPEED_OPTION, Command, complete_case, gathered, look_options
 from frbcli.cli.outputs import draw, picture_switch
 from frbcli.cli.progress import Display, display
 from frbcli.cli.runs.transient import ENDED_EARLY, EXIT_CODES
@@ -68,7 +68,7 @@ class Machines:
         return samples(distributions, self.samples, correlations, self.seed)
 
 
-@click.command()
+@click.command(cls=Command)
 @click.argument("source", metavar="CASE", type=INPUT, shell_complete=complete_case)
 @click.option("--set", "settings", multiple=True, metavar="KEY=V1,V2",
               help="Values of a key, or LOW..HIGH UNIT / COUNT; several keys make a grid, KEY=V1,V2;KEY=V1,V2 change "
@@ -81,17 +81,20 @@ class Machines:
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True,
               help="Seed of the Sobol sequence of the machines.")  # fmt: skip
 @click.option("--below", type=SPEED_OPTION, metavar="SPEED",
-              help="Speed below which the share of machines that whirl is given. [the highest of CASE]")  # fmt: skip
+              show_default="the highest of CASE",
+              help="Speed below which the share of machines that whirl is given.")  # fmt: skip
 @click.option("--list", "list_file", type=INPUT, metavar="POINTS.csv",
               help="Points one by one: keys in the first line, values below.")  # fmt: skip
-@click.option("-o", "--output", type=OUTPUT_FOLDER, metavar="DIR", help="Directory of all results. [CASE-sweep, here]")
+@click.option("-o", "--output", type=OUTPUT_FOLDER, metavar="DIR", show_default="CASE-sweep, here",
+              help="Directory of all results.")  # fmt: skip
 @click.option("--stability", is_flag=True, help="Compute the threshold speed alone, instead of a run-up.")
 @click.option("--no-runs", is_flag=True, help="Keep no run files.")
-@click.option("--format", "table_format", default="csv", show_default=True, metavar="FORMAT",
-              help="Format of the table, csv or parquet; parquet needs the extra frbcli[parquet].")  # fmt: skip
+@click.option("--format", "table_format", type=click.Choice(["csv", "parquet"]), default="csv", show_default=True,
+              help="Format of the table; parquet needs the extra frbcli[parquet].")  # fmt: skip
 @picture_switch
-@click.option("--jobs", type=int, default=-1, metavar="N", help="Processes. [one for each core]")
-@click.option("--backend", default="loky", show_default=True, metavar="NAME", help="loky (this machine) or dask.")
+@click.option("--jobs", type=int, default=-1, metavar="N", show_default="one for each core", help="Processes.")
+@click.option("--backend", type=click.Choice(["loky", "dask"]), default="loky", show_default=True,
+              help="loky computes on this machine.")  # fmt: skip
 @click.option("--scheduler", default="", metavar="ADDRESS", help="Address of the dask cluster, e.g. tcp://10.0.0.1:8786.")
 @force_option()
 @look_options

@@ -26,12 +26,12 @@ PRESSURES = (("inner ring", "inner_p_max"), ("outer ring", "outer_p_max"))
 
 
 def bearing_figure(sheet: BearingSheet) -> Figure:
-    """Six panels over the rotor speed, or over the eccentricity, two more with heat, and two between rough surfaces,
+    """Eight panels over the rotor speed, or over the eccentricity, two more with heat, and two between rough surfaces,
     one of which is the Stribeck curve; films by their dashes, quantities by their colours."""
     case, chart = sheet.case, sheet.over == ECCENTRICITY
     models = ", ".join(dict.fromkeys(sheet.labels))
     with styled():
-        rows = 3 + (case.heat is not None) + case.contact.rough
+        rows = 4 + (case.heat is not None) + case.contact.rough
         figure = new_figure(case.heading, f"bearing sheet, {models}", width=9.6, height=1.4 + 2.0 * rows)
         panels = figure.subplots(rows, 2, sharex=True)
         first: Reading = (lambda s: s.sommerfeld_number) if chart else (lambda s: s.eccentricity)
@@ -39,18 +39,18 @@ def bearing_figure(sheet: BearingSheet) -> Figure:
         _curves(panels[0, 1], sheet, "attitude angle in °", [("", lambda s: s.attitude_deg)])
         draw_coefficient(panels[1, 0], sheet, "stiffness")
         draw_coefficient(panels[1, 1], sheet, "damping")
-        loss: tuple[str, Reading] = ("power loss in W", lambda s: s.power)
-        film: tuple[str, Reading] = ("smallest film in µm", lambda s: 1e6 * s.film_thickness_min)
-        _curves(panels[2, 0], sheet, "loss and flow", [loss, ("side flow in mm³/s", lambda s: 1e9 * s.side_flow)])
-        _curves(panels[2, 1], sheet, "film and pressure", [film, ("largest pressure in bar", lambda s: 1e-5 * s.p_max)])
+        _curves(panels[2, 0], sheet, "power loss in W", [("", lambda s: s.power)])
+        _curves(panels[2, 1], sheet, "side flow in mm³/s", [("", lambda s: 1e9 * s.side_flow)])
+        _curves(panels[3, 0], sheet, "smallest film in µm", [("", lambda s: 1e6 * s.film_thickness_min)])
+        _curves(panels[3, 1], sheet, "largest pressure in bar", [("", lambda s: 1e-5 * s.p_max)])
         if case.heat is not None:
-            _curves(panels[3, 0], sheet, "film temperature in °C", [("", lambda s: s.temperature - ZERO_CELSIUS)])
-            _curves(panels[3, 1], sheet, "viscosity in mPa s", [("", lambda s: 1e3 * s.viscosity)])
+            _curves(panels[4, 0], sheet, "film temperature in °C", [("", lambda s: s.temperature - ZERO_CELSIUS)])
+            _curves(panels[4, 1], sheet, "viscosity in mPa s", [("", lambda s: 1e3 * s.viscosity)])
         if case.contact.rough:
             _draw_friction(panels[-1], sheet)
         for panel in panels[-1]:
             panel.set_xlabel("eccentricity" if chart else "rotor speed in Hz")
-        for panel in panels[2]:
+        for panel in panels[2:4].ravel():
             panel.set_yscale("log")
             plain_numbers(panel.yaxis)
         if chart:
@@ -60,7 +60,8 @@ def bearing_figure(sheet: BearingSheet) -> Figure:
                 panel.set_yscale("symlog")
         if len(sheet.films) > 1:
             handles = [panels[0, 0].plot([], [], color="black", **style)[0] for style in _styles(sheet)]
-            figure.legend(handles, sheet.films, loc="outside lower center", ncols=len(handles))
+            names = [film.replace("_", " ") for film in sheet.films]
+            figure.legend(handles, names, loc="outside lower center", ncols=len(handles))
     return figure
 
 

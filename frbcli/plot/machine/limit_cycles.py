@@ -38,6 +38,7 @@ ROOM = 1.05  # top of the frequencies over the largest one
 PIECES = 8  # straight pieces between two cycles
 WHIRL = "whirl locked in with unbalance"
 ERROR = "error by the mesh"
+SEEN = 0.004  # of the largest value of a panel: a wider band is seen, and named
 STABLE, UNSTABLE = "-", (0, (3, 1.5))
 
 
@@ -63,18 +64,21 @@ def limit_cycles_figure(diagram: LimitCycles, tracks: Sequence[RunTrack] = ()) -
 
 
 def _film(axes: Axes, diagram: LimitCycles, film: int) -> None:
+    in_films = bool(diagram.case.films)  # else in springs or ball bearings, over a length of their own
+    if in_films:
+        axes.set_ylim(0.0, 1.0)
     speeds = np.array([point.value for point in diagram.equilibria])
     eccentricity = np.array([point.eccentricity[film] for point in diagram.equilibria])
     stable = np.array([point.stable for point in diagram.equilibria])
-    _line(axes, speeds, eccentricity, stable, BLACK, "at rest")
+    _line(axes, speeds, eccentricity, stable, BLACK, "static equilibrium")
     if diagram.synchronous:
         speeds = np.array([point.value for point in diagram.synchronous])
         values = np.array([point.eccentricity_max[film] for point in diagram.synchronous])
         stable = np.array([point.stable for point in diagram.synchronous])
-        _line(axes, speeds, values, stable, GREY, "with unbalance")
+        _line(axes, speeds, values, stable, GREY, "synchronous motion with unbalance")
     for number, branch in _drawn(diagram):
         values = np.array([point.eccentricity_max[film] for point in branch.points])
-        label = "cycles" if len(diagram.branches) == 1 else f"cycles, branch {number + 1}"
+        label = "limit cycles" if len(diagram.branches) == 1 else f"limit cycles, branch {number + 1}"
         _curve(axes, branch, values, COLOURS[number % len(COLOURS)], label)
         _band(axes, branch, values, [_eccentricity_error(point, film) for point in branch.points], number)
         _whirls(axes, branch, [whirl.eccentricity_max[film] for whirl in branch.with_unbalance], number)
@@ -85,8 +89,8 @@ def _film(axes: Axes, diagram: LimitCycles, film: int) -> None:
             axes.plot(*at, linestyle="", marker=marker, color=BLACK, markersize=4.5, label=label, zorder=4)
             errors = [each.value_uncertainty for each in points], [_eccentricity_error(each, film) for each in points]
             _bars(axes, *at, *errors)
-    in_films = bool(diagram.case.films)  # else in springs or ball bearings, over a length of their own
-    axes.set_ylim(0.0, 1.0 if in_films else ROOM * axes.get_ylim()[1])
+    if not in_films:
+        axes.set_ylim(0.0, ROOM * axes.get_ylim()[1])
     quantity = "eccentricity" if in_films else "displacement over its length"
     axes.set_ylabel(f"largest {quantity}\n{diagram.films[film].replace('_', ' ')}".rstrip())
 
@@ -162,8 +166,9 @@ def _band(axes: Axes, branch: CycleBranch, y: Array, errors: Sequence[float], nu
     """The uncertainty of a branch, above and below it; none next to a fold that lies elsewhere on another mesh."""
     x, half = np.array([point.value for point in branch.points]), np.array(errors)
     known = np.isfinite(half)
-    label = None if ERROR in axes.get_legend_handles_labels()[1] else ERROR
     if known.any():
+        wide = half[known].max() > SEEN * max(axes.get_ylim()[1], y.max())
+        label = ERROR if wide and ERROR not in axes.get_legend_handles_labels()[1] else None
         axes.fill_between(x, y - half, y + half, where=known.tolist(), color=COLOURS[number % len(COLOURS)], alpha=BAND,
                           linewidth=0.0, label=label)  # fmt: skip
 

@@ -187,6 +187,7 @@ def shapes_figure(shapes: DampedModes) -> Figure:
     with styled():
         words = f"damped modes about the static equilibrium at {case.speed_unit.words(shapes.speed_Hz)}"
         figure = new_figure(case.heading, words, width=3.3 * max(columns, 2), height=0.5 + 3.0 * rows)
+        figure.set_layout_engine("constrained", w_pad=0.15)
         for number, mode in enumerate(shown):
             axes: Any = figure.add_subplot(rows, max(columns, 1), number + 1, projection="3d")
             draw_shape(axes, shapes, mode)

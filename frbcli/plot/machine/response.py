@@ -4,6 +4,7 @@ undamped critical speed map, with the stiffness of the films of the case over it
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -39,6 +40,7 @@ FEW = 10  # speeds of films: they are marked, as fewer than two are no line
 FILM_DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)))
 FILM_MARKS = ("o", "D", "^")
 APART = 0.04  # of the range of speeds: labels of critical speeds that are nearer stand below each other
+MARGIN = 1.02  # of the axis of the speeds over the highest one
 LABEL_LENGTH, LEVELS = 0.45, 2  # of the height of the axes
 
 
@@ -53,7 +55,7 @@ def response_figure(motion: Response, tracks: Sequence[OrderTrack] = ()) -> Figu
     with styled():
         grows = ", dotted where a whirl grows and hides it" if (motion.growth > 0.0).any() else ""
         figure = new_figure(case.heading, f"linear {motion.what} about the static equilibrium{grows}", 9.6, 10.8)
-        amplitude, phase, polar, force, first, second = figure.subplots(3, 2).ravel()
+        amplitude, polar, phase, force, first, second = figure.subplots(3, 2).ravel()
         draw_amplitude(amplitude, motion)
         for number in range(len(motion.points)):
             colour, dash = _line_of(number)
@@ -73,12 +75,12 @@ def response_figure(motion: Response, tracks: Sequence[OrderTrack] = ()) -> Figu
         for panel in (amplitude, force):
             panel.set_ylim(bottom=0.0)
         polar.set_aspect("equal", adjustable="datalim")
-        polar.set_xlabel(f"forward motion along the {'mark' if motion.excitation == UNBALANCE else 'load'}, µm")
-        polar.set_ylabel("across it, µm")
+        polar.set_xlabel(f"forward motion in phase with the {'mark' if motion.excitation == UNBALANCE else 'load'}, µm")
+        polar.set_ylabel("90° ahead, µm")
         names = (
-            "Bode diagram: amplitude", "Bode diagram: phase", "polar diagram; dots: highest speed", "bearing forces"
+            "Bode diagram: amplitude", "polar diagram; dots: highest speed", "Bode diagram: phase", "bearing forces"
         )  # fmt: skip
-        for panel, name in zip((amplitude, phase, polar, force), names, strict=True):
+        for panel, name in zip((amplitude, polar, phase, force), names, strict=True):
             panel.set_title(name)
         for panel, speed in zip((first, second), _orbit_speeds(motion), strict=False):
             _orbits(panel, motion, speed)
@@ -152,14 +154,14 @@ def _orbits(axes: Axes, motion: Response, speed: int) -> None:
         axes.plot(x[0], y[0], color=colour, marker="o", markersize=4.0)
     axes.set_aspect("equal", adjustable="datalim")
     dots = "mark along x" if motion.excitation == UNBALANCE else f"{motion.excitation} at angle 0"
-    axes.set_title(f"orbits at {motion.speeds_Hz[speed]:.4g} Hz; dots: {dots}")
+    axes.set_title(f"orbits at {motion.case.speed_unit.words(motion.speeds_Hz[speed])}; dots: {dots}")
     axes.set_xlabel("x in µm")
     axes.set_ylabel("y in µm")
 
 
 def _speed_axis(axes: Axes, motion: Response) -> None:
     axes.set_xlabel("rotor speed in Hz")
-    axes.set_xlim(0.0, float(motion.speeds_Hz[-1]))
+    axes.set_xlim(0.0, MARGIN * float(motion.speeds_Hz[-1]))
 
 
 def _line_of(number: int) -> tuple[str, object]:
@@ -170,10 +172,12 @@ def _line_of(number: int) -> tuple[str, object]:
 def _line(axes: Axes, motion: Response, values: Array, colour: str, dash: object, label: str | None) -> None:
     """A curve over the speed, dotted where a whirl grows."""
     grows = motion.growth > 0.0
-    axes.plot(motion.speeds_Hz, np.where(grows, np.nan, values), color=colour, linestyle=dash, label=label)
+    alone = "o" if len(motion.speeds_Hz) == 1 else ""  # no line goes through one speed
+    style: dict[str, Any] = {"color": colour, "marker": alone}
+    axes.plot(motion.speeds_Hz, np.where(grows, np.nan, values), linestyle=dash, label=label, **style)
     if grows.any():
         dotted = grows | np.append(grows[1:], False) | np.insert(grows[:-1], 0, False)
-        axes.plot(motion.speeds_Hz, np.where(dotted, values, np.nan), color=colour, linestyle=GROWING)
+        axes.plot(motion.speeds_Hz, np.where(dotted, values, np.nan), linestyle=GROWING, **style)
 
 
 def _polar(axes: Axes, motion: Response, number: int, colour: str, dash: object) -> None:

@@ -162,9 +162,9 @@ def draw_orbits(axes: Axes, runs: Sequence[Run], bearing: str, span_s: tuple[flo
         widest = max(widest, *circles, _reach(*signals, first, last) * MICRO)
     for radius in circles:
         axes.add_patch(Circle((0.0, 0.0), radius, fill=False, edgecolor=GREY, linewidth=1.2))
-        axes.annotate(
-            f"clearance {radius:.4g} µm", (0.0, radius), (0, 3), textcoords="offset points", ha="center", color=GREY
-        )
+    if circles:
+        words = ", ".join(f"{radius:.4g}" for radius in sorted(circles))
+        axes.text(0.02, 0.98, f"grey: clearance\n{words} µm", transform=axes.transAxes, va="top", color=GREY)
     axes.axhline(0.0, color=GREY, linewidth=0.5)
     axes.axvline(0.0, color=GREY, linewidth=0.5)
     axes.set_aspect("equal")

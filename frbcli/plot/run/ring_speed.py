@@ -64,7 +64,7 @@ def _draw_concentric(axes: Axes, concentric: dict[str, float]) -> None:
         ring = alike[0] if len(alike) < len(concentric) else ""
         axes.axhline(value, color=GREY, linestyle=(0, (5, 3)), linewidth=0.9)
         axes.annotate(
-            " ".join(word for word in ("concentric", ring) if word) + f" {value:.3f}",
+            " ".join(word for word in ("torque balance, concentric", ring) if word) + f": {value:.3f}",
             (1.0, value), (-4, 3), xycoords=axes.get_yaxis_transform(), textcoords="offset points",
             ha="right", va="bottom", color=GREY, bbox=PAPER,
         )  # fmt: skip

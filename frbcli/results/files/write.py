@@ -154,6 +154,7 @@ TABLES = {
     "csv": kind("a table of frb", rb"", has_checksum),
     "parquet": kind("a Parquet file of frb", rb"PAR1"),
     "mat": kind("a MAT file of frb", rb"MATLAB "),
+    "xlsx": kind("an Excel file of frb", rb"PK"),
 }
 PICTURES = {
     ".png": kind("a PNG picture of frb", rb"\x89PNG"),

@@ -103,7 +103,7 @@ class Columns:
         names = [f'"{printable(name)}"' for name in self.values]
         if len(names) <= FEW:
             return f"It has: {', '.join(names)}."
-        return f"It has {len(names)} columns: `frb waterfall {self.path.name} --list` lists them."
+        return f"It has {len(names)} columns: `frb waterfall {self.path.name} --columns` lists them."
 
 
 def unit_in(name: str) -> str | None:

@@ -46,7 +46,8 @@ def read_columns(path: Path) -> Columns:
     try:
         require_file(path, LARGEST_FILE)
     except Unreadable as error:
-        raise wrong_file(path, str(error), "Give the file of a measurement, or cut it into several.") from None
+        remedy = "Cut it into several files." if path.is_file() else "Check its name."
+        raise wrong_file(path, str(error), remedy) from None
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         other = OTHERS.get(path.suffix.lower())

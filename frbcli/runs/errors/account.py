@@ -109,7 +109,8 @@ def _heat_rows(run: Run) -> list[tuple[str, str, str]]:
     whole, oil, walls, kept = (run.cost[f"heat_{name}_J"] for name in ("dissipated", "carried", "into_walls", "kept"))
     off = run.error.get("heat_balance_relative")
     defect = "" if off is None else f", unaccounted for {off:.0e}"
-    parts = f"{oil:.4g} J with the oil, {walls:.4g} J into walls, {kept:.4g} J kept"
+    of_walls = f"{walls:.4g} J into" if walls >= 0.0 else f"{-walls:.4g} J out of"
+    parts = f"{oil:.4g} J with the oil, {of_walls} shaft and housing, {kept:.4g} J kept"
     return [("heat", f"{whole:.4g} J", f"{parts}{defect}")]
 
 

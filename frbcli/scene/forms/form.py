@@ -146,8 +146,8 @@ class FilmForm:
                 return "the oil is part of the state, and some is created"
             return f"{'mass-conserving: ' if law.conserves else ''}the oil is part of the state"
         if not law.cavitates:
-            return "the film has no state and does not cavitate"
-        return "the film has no state, and oil is not balanced"
+            return "the film does not cavitate"
+        return "oil is not conserved"
 
     def remedies(self, case: Case) -> tuple[str, ...]:
         """Settings that the case does not have yet with which its films are easier to solve, best first."""
@@ -171,7 +171,7 @@ class FilmForm:
             return "finite volumes", PUBLISHED
         if law.keeps_oil:
             return "finite volumes", f"{law.name}: conserves oil and keeps it from moment to moment"
-        return "finite volumes", f"{law.name}: has no state, each moment is a steady film of its own"
+        return "finite volumes", f"{law.name}: each moment is a steady film of its own"
 
     def mesh_of(self, plan: Plan) -> tuple[int, int]:
         """Elements or cells (along, around) of a plan, as accuracy.mesh has them."""
@@ -185,7 +185,7 @@ class FilmForm:
 
 
 def cells_B(cells: tuple[int, int], films: int) -> float:
-    """Bytes of films on cells or elements (around, along)."""
+    """Bytes of films of cells or elements (around, along)."""
     around, along = cells
     return films * (8.0 * BLOCKS * around * along**2 + CELL_B * around * along)
 

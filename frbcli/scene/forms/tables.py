@@ -65,7 +65,7 @@ class ModalForm(FilmForm):
     modal: ClassVar[bool] = True
 
     def decision_in_tests(self, case: Case, law: type[Law]) -> tuple[str, str]:
-        return self.name, f"{law.name} in a rectangular gap; it has no state"
+        return self.name, f"{law.name} in a rectangular gap"
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ class ShortForm(FilmForm):
         return SHORT_POINTS, "at which the pressure is given; the force is exact"
 
     def decision_in_tests(self, case: Case, law: type[Law]) -> tuple[str, str]:
-        return self.name, f"{law.name} of the short bearing, set in the case; it has no state"
+        return self.name, f"{law.name} of the short bearing, set in the case"
 
 
 @dataclass(frozen=True)

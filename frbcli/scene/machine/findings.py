@@ -70,10 +70,10 @@ FILM_OPERATION = (
     Column("film", "", "name of the film", attrgetter("name"), shown=(Shown("film"),)),
     Column("clearance", "m", "clearance", shown=(Shown("gap, um", ".4g", "um"),)),
     Column("warming", "m", "what heat has added to it", shown=(Shown("by heat, um", "+.3g", "um"),)),
-    Column("turning", "m", "what centrifugal growth would add", shown=(Shown("by turning", "+.2g", "um"),)),
+    Column("turning", "m", "what centrifugal growth would add", shown=(Shown("by spin, um", "+.2g", "um"),)),
     Column("viscosity", "Pa s", "viscosity of the oil", shown=(Shown("mPa*s", ".4g", "mPa s"),)),
-    Column("speed", "Hz", "speed of journal and shell together", lambda film: film.omega / (2.0 * math.pi),
-           shown=(speed_shown(),)),
+    Column("speed", "Hz", "sum of the speeds of journal and shell", lambda film: film.omega / (2.0 * math.pi),
+           shown=(speed_shown(head="walls, Hz"),)),
     Column("reynolds_number", "", "Reynolds number (3.3)", attrgetter("reynolds"), shown=(Shown("Re (3.3)", ".0f"),)),
     Column("laminar", "", "whether (3.3) holds"),
 )  # fmt: skip

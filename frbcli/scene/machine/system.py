@@ -63,7 +63,7 @@ SETTLED_OVER_TOLERANCE, SETTLED_RANGE = 4.0, (2e-5, 1e-3)
 
 def make_films(case: Case, plan: Plan, top_Hz: float | None = None) -> Films:
     """The films of a case as its plan has them, tabulated where they have tables. top_Hz: largest speed of the rotor,
-    default that of the run."""
+    default the one of the run."""
     makers = {NO_FILM: lambda *_: NoFilms(), CELLS: _cells, SOLUTIONS: _solutions}
     makers |= {TILTED: _tilted, INCLINED: _inclined}
     return makers.get(plan.form, _rectangles)(case, plan, top_Hz)

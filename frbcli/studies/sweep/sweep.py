@@ -18,6 +18,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from frbcli import __version__
+from frbcli.analysis.orders.subsynchronous import whirls
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, Table, Tabular, table_of
 from frbcli.errors import InputError
@@ -314,14 +315,26 @@ REASON = Column("reason", "", "", reason, shown=(Shown("reason"),), key="", flat
 ENDED = Column("ended", "", "", attrgetter("status"), shown=(Shown("status"),), key="", flat=False)
 
 
+def _all_whirls(point: SweepPoint) -> str:
+    spans = []
+    for whirl in whirls(point.events):
+        end = "end" if whirl.end is None else f"{whirl.end['speed_Hz']:.1f}"
+        name = " ".join(filter(None, (whirl.name, whirl.film.replace("_", " ") or "whirl")))
+        spans.append(f"{name} {whirl.begin['speed_Hz']:.1f} to {end}")
+    return "; ".join(spans)
+
+
+WHIRLS = Column("whirls", "", "all whirls, from and to which rotor speed in Hz", _all_whirls, key="")
+
+
 def point_columns(keys: Sequence[str], method: str, reasons: bool = False) -> tuple[Column, ...]:
     """The columns of a SweepPoint of a sweep over some keys of the case. reasons: whether some have no result."""
     settings = (
         Column(key, "", f"value of {key}, as text", _setting(key), shown=(Shown(key),), key="")
         for key in keys
     )  # fmt: skip
-    return (NUMBER, *settings, *RESULT, *(one for kind in EVENTS[method] for one in event_columns(kind)), *COST, ENDED,
-            *([REASON] if reasons else []))  # fmt: skip
+    return (NUMBER, *settings, *RESULT, *(one for kind in EVENTS[method] for one in event_columns(kind)),
+            *([WHIRLS] if method == "runup" else []), *COST, ENDED, *([REASON] if reasons else []))  # fmt: skip
 
 
 def event_columns(kind: str) -> tuple[Column, ...]:
