@@ -12,21 +12,21 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.analysis.events import find_events as find_events
     from frbcli.analysis.measured import Measurement as Measurement
     from frbcli.analysis.measured import measured_run as measured_run
-    from frbcli.analysis.orders.order_tracking import order_track as order_track
+    from frbcli.analysis.order_tracking import order_track as order_track
     from frbcli.analysis.spectrum import waterfall as waterfall
-    from frbcli.balancing.balance import TrialRun as TrialRun
-    from frbcli.balancing.balance import balance as balance
-    from frbcli.case.additions import add_law as add_law
-    from frbcli.case.additions import remove_law as remove_law
+    from frbcli.balancing import TrialRun as TrialRun
+    from frbcli.balancing import balance as balance
     from frbcli.case.reading.load import case_from_dict as case_from_dict
     from frbcli.case.reading.load import load_case as load_case
     from frbcli.case.reading.load import load_case_text as load_case_text
     from frbcli.case.reading.shipped import shipped_cases as shipped_cases
     from frbcli.case.schema import Case as Case
+    from frbcli.case.schema import add_law as add_law
+    from frbcli.case.schema import remove_law as remove_law
     from frbcli.cycles.limit_cycles import limit_cycles as limit_cycles
     from frbcli.cycles.limit_cycles import limit_cycles_over as limit_cycles_over
     from frbcli.cycles.stability_map import stability_map as stability_map
-    from frbcli.equilibrium.warm_machine import warm_machine as warm_machine
+    from frbcli.equilibrium.static_machine import warm_machine as warm_machine
     from frbcli.errors import Fault as Fault
     from frbcli.errors import FrbError as FrbError
     from frbcli.errors import InputError as InputError
@@ -35,6 +35,7 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.linear.balance_quality import balance_quality as balance_quality
     from frbcli.linear.critical_map import critical_map as critical_map
     from frbcli.linear.damped_modes import damped_modes as damped_modes
+    from frbcli.linear.damped_modes import vibration_limits as vibration_limits
     from frbcli.linear.modes import natural_modes as natural_modes
     from frbcli.linear.response import response as response
     from frbcli.linear.sheets.ball import ball_bearing_sheet as ball_bearing_sheet
@@ -42,7 +43,6 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.linear.sheets.bearing import sommerfeld_chart as sommerfeld_chart
     from frbcli.linear.sheets.thrust import thrust_sheet as thrust_sheet
     from frbcli.linear.stability import stability as stability
-    from frbcli.linear.vibration import vibration_limits as vibration_limits
     from frbcli.plot.axes import bearing as draw_bearing  # noqa: F401
     from frbcli.plot.axes import campbell as draw_campbell  # noqa: F401
     from frbcli.plot.axes import eccentricity as draw_eccentricity  # noqa: F401
@@ -84,12 +84,12 @@ _PUBLIC = {  # module, or module:attribute of another name
     "CavitationLaw": "frbcli.film.cavitation.law:Law",
     "CavitationKey": "frbcli.film.cavitation.law:Key",
     "Measurement": "frbcli.analysis.measured",
-    "TrialRun": "frbcli.balancing.balance",
+    "TrialRun": "frbcli.balancing",
     "accuracy": "frbcli.studies.accuracy",
     "add_force_law": "frbcli.rotor.port",
-    "add_law": "frbcli.case.additions",
+    "add_law": "frbcli.case.schema",
     "against_measured": "frbcli.studies.against",
-    "balance": "frbcli.balancing.balance",
+    "balance": "frbcli.balancing",
     "balance_quality": "frbcli.linear.balance_quality",
     "ball_bearing_sheet": "frbcli.linear.sheets.ball",
     "bearing_sheet": "frbcli.linear.sheets.bearing",
@@ -115,11 +115,11 @@ _PUBLIC = {  # module, or module:attribute of another name
     "make_plan": "frbcli.scene.planning.plan",
     "measured_run": "frbcli.analysis.measured",
     "natural_modes": "frbcli.linear.modes",
-    "order_track": "frbcli.analysis.orders.order_tracking",
+    "order_track": "frbcli.analysis.order_tracking",
     "picture": "frbcli.plot.picture",
     "read_run": "frbcli.results.store",
     "remove_force_law": "frbcli.rotor.port",
-    "remove_law": "frbcli.case.additions",
+    "remove_law": "frbcli.case.schema",
     "response": "frbcli.linear.response",
     "rotation": "frbcli.bearing_tests.kinematic",
     "rundown": "frbcli.runs.run",
@@ -131,9 +131,9 @@ _PUBLIC = {  # module, or module:attribute of another name
     "stability": "frbcli.linear.stability",
     "sweep": "frbcli.studies.sweep.sweep",
     "thrust_sheet": "frbcli.linear.sheets.thrust",
-    "vibration_limits": "frbcli.linear.vibration",
+    "vibration_limits": "frbcli.linear.damped_modes",
     "warm_up": "frbcli.studies.warm_up",
-    "warm_machine": "frbcli.equilibrium.warm_machine",
+    "warm_machine": "frbcli.equilibrium.static_machine",
     "whirl": "frbcli.bearing_tests.kinematic",
     "waterfall": "frbcli.analysis.spectrum",
     "write_report": "frbcli.report.page",

@@ -20,9 +20,9 @@ PACKAGE = Path(frbcli.__file__).parent
 
 # In array notation what a kernel computes, for readers and for the tests that hold the kernel to it.
 PLAIN = {
-    ("frbcli.film.rectangles.plain", "solve_plain"): "frbcli.film.rectangles.modal",
+    ("frbcli.film.rectangles.film_force", "solve_plain"): "frbcli.film.rectangles.modal",
     ("frbcli.film.rectangles.short", "short_pressure"): "frbcli.film.rectangles.short",
-    ("frbcli.elements.rolling.plain", "solve_plain"): "frbcli.rotor.port_function",  # which compiles the law
+    ("frbcli.elements.ball_force", "solve_plain"): "frbcli.rotor.port_function",  # which compiles the law
     ("frbcli.film.roughness.plain", "plain_touch"): "frbcli.film.roughness.asperities",
 }
 Name = tuple[str, str]  # module, name of what it defines

@@ -27,7 +27,7 @@ WHEEL = "Wheel-Version: 1.0\nGenerator: test\nRoot-Is-Purelib: true\nTag: py3-no
 # A run-up of the machine without films, which has the fewest kernels; its processor, and what was compiled
 RUN = """
 import json, sys, frbcli
-from frbcli.compilation import counted
+from frbcli.compiled import counted
 with counted() as compilations:
     frbcli.runup(frbcli.load_case("seal", ["speed.duration=0.01 s", *sys.argv[2:]]), sys.argv[1])
 from numba.core import config

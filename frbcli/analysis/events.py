@@ -17,9 +17,9 @@ from typing import Any, Literal
 import numpy as np
 
 from frbcli.analysis import signals
-from frbcli.analysis.orders.forced import without_forced
-from frbcli.analysis.orders.order_tracking import STEPS, Revolutions, START_s, Tracked, track
-from frbcli.analysis.orders.resonance import (
+from frbcli.analysis.forced import without_forced
+from frbcli.analysis.order_tracking import STEPS, Revolutions, START_s, Tracked, track
+from frbcli.analysis.resonance import (
     FLOOR,
     LATE,
     critical_steps,
@@ -31,10 +31,9 @@ from frbcli.analysis.orders.resonance import (
     synchronous_amplitude,
     vibrations_beside,
 )
-from frbcli.analysis.orders.subsynchronous import HOPS, SIDES, WhirlMoment, find_whirls, rings_out, window_step_s
-from frbcli.analysis.peaks import crossing, intervals_above, summit
 from frbcli.analysis.signals import RunLike, joined, pieces, points
-from frbcli.analysis.spectrum import hann
+from frbcli.analysis.spectrum import crossing, hann, intervals_above, summit
+from frbcli.analysis.subsynchronous import HOPS, SIDES, WhirlMoment, find_whirls, rings_out, window_step_s
 from frbcli.arrays import Array, Complex
 from frbcli.results.store import CLEARANCE_STEP, LOSS
 from frbcli.units import HERTZ, SpeedUnit

@@ -23,8 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.analysis.events import WHIRL_BEGINS, growth, resolution
-from frbcli.analysis.orders.subsynchronous import BEGINS, SIDES
 from frbcli.analysis.signals import RunLike, joined, piece, samples_about, speed_at
+from frbcli.analysis.subsynchronous import BEGINS, SIDES
 from frbcli.arrays import Array
 
 BETWEEN = 0.03  # of a step of the search: how far a moment that is read between two steps may be off

@@ -22,15 +22,26 @@ from frbcli.bearing_tests.steady_film import (
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.boundaries import ALL, RESPONSE, supply_line
-from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, reference_pressure, supplied, supply_share
+from frbcli.film.cells.film import (
+    Motion,
+    Path,
+    VolumeFilm,
+    VolumeSolution,
+    fitted_grid,
+    gap_on,
+    path_seen_from,
+    reference_pressure,
+    supplied,
+    supply_share,
+    turned,
+)
 from frbcli.film.cells.gas.balance import Carried, KeptGas
 from frbcli.film.cells.loads import FilmLoads, estimate, loads
-from frbcli.film.cells.motion import Motion, Path, gap_on, path_seen_from, turned
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.tilted.steady_force import land_paths, lands, summed
+from frbcli.scene.films import slope_of, tilt_of
 from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, law_at
-from frbcli.scene.tilt import slope_of, tilt_of
 
 RISE_TIME = 0.01  # s, t_1 of (4.49)
 FAST = 1e6  # 1/s: oil that is replaced so fast has no time for an exchange of gas

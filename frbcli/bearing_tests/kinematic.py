@@ -22,17 +22,17 @@ from frbcli.bearing_tests.steady_film import COARSE_CELLS, FilmField, film_momen
 from frbcli.bearing_tests.tested_film import tested_film
 from frbcli.case.schema import Case
 from frbcli.columns import Table, Tabular, table_of
-from frbcli.compilation import working_time
+from frbcli.compiled import working_time
 from frbcli.errors import NotConverged
+from frbcli.film.cells.film import Motion, Path
 from frbcli.film.cells.loads import FilmLoads
-from frbcli.film.cells.motion import Motion, Path
-from frbcli.film.operating import friction_coefficient, sommerfeld_number
+from frbcli.film.gap import friction_coefficient, sommerfeld_number
+from frbcli.scene.films import displacement_of, slope_of, states_moment, tilt_of, tilt_rate_of
 from frbcli.scene.gate.kinematic import tested_case
 from frbcli.scene.machine.heat import heat_of, warm_case
 from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, kinematic_plan, with_model
 from frbcli.scene.supply import advised, film_advice
-from frbcli.scene.tilt import displacement_of, slope_of, states_moment, tilt_of, tilt_rate_of
 from frbcli.thermal.model import FilmHeat, SteadyHeat, steady_heat
 
 RATIO, MOST = 10.0**0.2, 24  # of two speeds of a curve, and points on either side of the speed of the test

@@ -13,23 +13,22 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
-from frbcli.equilibrium.newton import ForceBalance, Search, search_rest
+from frbcli.equilibrium.resting import ForceBalance, Search, search_rest
 from frbcli.errors import NotConverged
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cells.balance.side_flow import outflow
-from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
+from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
+from frbcli.film.cells.linearised import settled_force
 from frbcli.film.cells.loads import CavitationFactor, FilmLoads, estimate, loads
-from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.steady_force import settled_force
 from frbcli.film.cells.tilted.steady_force import Land, lands, summed
 from frbcli.film.gap import Section
 from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.film import FilmForce, direct_force, evaluate, largest_pressure, make_film
 from frbcli.film.section_faults import no_inflow
+from frbcli.scene.films import gaps_at_ends
 from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, law_at
-from frbcli.scene.tilt import gaps_at_ends
 
 MODAL_MESH, COARSE_MODAL_MESH = Mesh(10, 192), Mesh(5, 96)
 NUDGE = 1e-3  # share of the gap by which the journal is moved for a derivative

@@ -26,17 +26,15 @@ from frbcli.bearing_tests.steady_film import (
     resting_displacement,
 )
 from frbcli.case.schema import Case
-from frbcli.film.cells.film import supply_share
+from frbcli.film.cells.film import Motion, Path, supply_share
 from frbcli.film.cells.loads import FilmLoads, OilBalance, Torque
-from frbcli.film.cells.motion import Motion, Path
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.end_flow import end_flow, make_end_flow
 from frbcli.film.rectangles.film import FilmForce, evaluate, make_film
 from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm, sealed_shape
 from frbcli.film.roughness.contact import Rubbing
-from frbcli.scene.forms.form import FilmForm
-from frbcli.scene.forms.tables import SHORT
+from frbcli.scene.forms.form import SHORT, FilmForm
 from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan
 

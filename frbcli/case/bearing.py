@@ -29,9 +29,9 @@ from frbcli.case.model import (
     Tilt,
     altered,
 )
-from frbcli.case.surroundings.over_time import InputTemperature
-from frbcli.case.surroundings.supports import Damper, Support
-from frbcli.case.thermal import AnyWall, Material
+from frbcli.case.oil import AnyWall, Material
+from frbcli.case.over_time import InputTemperature
+from frbcli.case.surroundings import Damper, Support
 from frbcli.materials import SOLIDS, Solid
 
 

@@ -34,8 +34,8 @@ from frbcli.case.model import (
     SignedSpeed,
     TopSpeed,
 )
-from frbcli.case.surroundings.over_time import Input, OverTime, is_over_time
-from frbcli.case.surroundings.supports import Damper, Support
+from frbcli.case.over_time import Input, OverTime, is_over_time
+from frbcli.case.surroundings import Damper, Support
 from frbcli.materials import ROLLING, Elastic
 
 Entry = Annotated[float, Quantity("N/m", "1e6 N/m")]

@@ -40,8 +40,8 @@ from frbcli.case.model import (
     Stiffness,
     Unbalance,
 )
+from frbcli.case.over_time import MachineTable
 from frbcli.case.reading.tables import Breach, Path
-from frbcli.case.surroundings.places import MachineTable
 from frbcli.units import display
 
 if TYPE_CHECKING:

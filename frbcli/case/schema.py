@@ -6,6 +6,8 @@ Keys of the file that are no Python words have other attribute names: `from` and
 `given_bearings` are all tables [[bearing]], `placed_bearings` the same with a cartridge as its two ends; of these
 `bearings` are those with a film and `elements` the others.
 Rules that tie several keys together are in `checks.py`.
+
+Cavitation laws that were added from Python: cases take them in this process, with the keys of their tables.
 """
 
 from __future__ import annotations
@@ -15,22 +17,20 @@ from typing import Any, Literal
 
 from pydantic import Field, PrivateAttr
 
-from frbcli.case.bearing import Bearings, FilmBearing
-from frbcli.case.contact import Contact
-from frbcli.case.course.drive import Drive
-from frbcli.case.course.run import Accuracy, KinematicMotion, Output, SpeedRamp, Start, given_speed_unit
-from frbcli.case.elements import Axial, Element, ThrustBearings
-from frbcli.case.film import Cavitation, FilmGeometry, FilmModel, RingFilm
+from frbcli.case.bearing import Bearings, CartridgeBearing, FilmBearing, FloatingRingBearing, SingleFilmBearing
+from frbcli.case.elements import Axial, BallBearingKeys, CoefficientsBearing, Element, ThrustBearings
+from frbcli.case.film import Cavitation, Contact, FilmGeometry, FilmModel, RingFilm, adopt
 from frbcli.case.model import Label, Model, altered
-from frbcli.case.oil import Oil
-from frbcli.case.reading.text import as_text
+from frbcli.case.oil import AnyThermal, Oil, Thermal
+from frbcli.case.over_time import largest
+from frbcli.case.reading.settings import as_text
 from frbcli.case.rotor import Bow, Disk, Rotor, ShaftSection
-from frbcli.case.surroundings.forces import AppliedForce, Bases, MagneticPull, Spring
-from frbcli.case.surroundings.over_time import largest
-from frbcli.case.surroundings.supports import Housing
-from frbcli.case.thermal import AnyThermal, Thermal
+from frbcli.case.run import Accuracy, Drive, KinematicMotion, Output, SpeedRamp, Start, given_speed_unit
+from frbcli.case.surroundings import AppliedForce, Bases, Damper, Housing, MagneticPull, Spring
 from frbcli.columns import html_table
 from frbcli.errors import Fault, InputError
+from frbcli.film.cavitation import table
+from frbcli.film.cavitation.law import Law
 from frbcli.units import SpeedUnit
 
 Confirmation = Literal["surface-speed", "gap-growth", "clearance"]
@@ -141,7 +141,7 @@ class Case(Model):
 
     def _repr_html_(self) -> str:
         """In a notebook: its values in SI and as they are written."""
-        from frbcli.case.reading.listing import values  # it is made of cases
+        from frbcli.case.reading.shipped import values  # it is made of cases
 
         rows = [(each.key, each.value, each.unit, each.shown if each.unit else "") for each in values(self)]
         return html_table(self.heading, ("key", "SI", "", "reads"), rows, len(rows))
@@ -292,3 +292,54 @@ class Case(Model):
 def json_schema() -> dict[str, Any]:
     """The JSON Schema of a case file."""
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **Case.model_json_schema(by_alias=True)}
+
+
+def add_law(law: type[Law]) -> None:
+    """Let film.cavitation take a user-defined law in this process, and [film.NAME] its keys.
+
+    Parameters
+    ----------
+    law : type[CavitationLaw]
+        The law. One of the same name that was added before is replaced.
+
+    Raises
+    ------
+    ValueError
+        If it is no law, or has the name of a shipped law.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> frbcli.add_law(MyLaw)  # doctest: +SKIP
+    """
+    table.add(law)
+    _adopt()
+
+
+def remove_law(name: str) -> None:
+    """Take a law away that add_law has added.
+
+    Parameters
+    ----------
+    name : str
+        Name of the law.
+
+    Raises
+    ------
+    KeyError
+        For any other law.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> frbcli.remove_law("mine")  # doctest: +SKIP
+    """
+    table.remove(name)
+    _adopt()
+
+
+def _adopt() -> None:
+    adopt(FilmModel, (RingFilm, Damper))
+    bearings = (SingleFilmBearing, FloatingRingBearing, CartridgeBearing, CoefficientsBearing, BallBearingKeys)
+    for holder in (*bearings, Case):
+        holder.model_rebuild(force=True)

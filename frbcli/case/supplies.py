@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple,
 from pydantic import Field
 
 from frbcli.case.model import Angle, Count, Flow, Fraction, Length, Model, OpeningAngle, RiseTime
+from frbcli.case.over_time import InputPressure, OverTime, largest, values_of
 from frbcli.case.reading.tables import Breach, Path, number
-from frbcli.case.surroundings.over_time import InputPressure, OverTime, largest, values_of
 from frbcli.errors import Fault
 from frbcli.film.gap import AxialGroove, Edge, Hole
 from frbcli.units import NUMBER, display

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 if TYPE_CHECKING:
-    from frbcli.results.files.write import Kind
+    from frbcli.results.write import Kind
 
 _READS, _FORCE = "frbcli.reads", "frbcli.force"  # in the context of a command
 
@@ -99,7 +99,7 @@ def check_outputs(*files: tuple[Path | None, Kind], picture: Path | None = None)
     files: with their kinds, None is no result; picture: one more that is drawn; whoever wants none does not wait for
     the library that draws.
     """
-    from frbcli.results.files.write import PICTURES, require_places
+    from frbcli.results.write import PICTURES, require_places
 
     wanted = [(file, kind) for file, kind in files if file is not None]
     if picture is not None:

@@ -23,7 +23,7 @@ from frbcli.errors import INTERRUPTED, FrbError, InputError, NotConverged, input
 # the module is imported when its command is called
 COMMANDS = {
     "check": (
-        "frbcli.cli.casefiles.check",
+        "frbcli.cli.check",
         "Validate a case; show its loads, speeds and what will be modelled.",
         "frb check jeffcott --set bearing.clearance='40 um'",
     ),
@@ -132,7 +132,7 @@ COMMANDS = {
         "Open the documentation that is installed with frb.",
         "frb docs tutorial",
     ),
-    "cases": ("frbcli.cli.casefiles.cases", "List, show or copy the shipped cases.", "frb cases jeffcott -o my.toml"),
+    "cases": ("frbcli.cli.cases", "List, show or copy the shipped cases.", "frb cases jeffcott -o my.toml"),
     "schema": (
         "frbcli.cli.casefiles.schema",
         "Print the JSON Schema of a case file for editors.",

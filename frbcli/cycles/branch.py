@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from frbcli.cycles.method.balance import left_out, packed
+from frbcli.cycles.method.balance import Multipliers, left_out, packed
 from frbcli.cycles.method.continuation import (
     Place,
     Strides,
@@ -20,7 +20,6 @@ from frbcli.cycles.method.continuation import (
     step_from,
 )
 from frbcli.cycles.method.equilibria import HopfPoint
-from frbcli.cycles.method.floquet import Multipliers
 from frbcli.cycles.method.follower import (
     ASKED,
     FIRST_HARMONICS,

@@ -17,31 +17,7 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.cycles.branch import LEFT, Branch, first_place, follow_branch
-from frbcli.cycles.method.balance import loads_along, unpacked
-from frbcli.cycles.method.continuation import (
-    Place,
-    Strides,
-    Unreachable,
-    follow,
-    oriented,
-    reached,
-    unit_vector,
-)
-from frbcli.cycles.method.courses import Changing, MachineCourse
-from frbcli.cycles.method.equilibria import (
-    Equilibrium,
-    HopfPoint,
-    Lyapunov,
-    Resting,
-    equations,
-    equilibrium,
-    hopf_points,
-    lyapunov_coefficient,
-)
-from frbcli.cycles.method.follower import FLIP, FOLD, HOPF, TORUS, Cycle, FoldFollower, Follower
-from frbcli.cycles.method.machine import Machine
-from frbcli.cycles.method.mesh_error import CycleError, OtherMesh, cycle_error, hopf_error
-from frbcli.cycles.result import (
+from frbcli.cycles.columns import (
     SUBCRITICAL,
     SUPERCRITICAL,
     Cost,
@@ -52,6 +28,42 @@ from frbcli.cycles.result import (
     SpecialPoint,
     hertz,
 )
+from frbcli.cycles.method.balance import loads_along, unpacked
+from frbcli.cycles.method.continuation import (
+    Place,
+    Strides,
+    Unreachable,
+    follow,
+    oriented,
+    reached,
+    unit_vector,
+)
+from frbcli.cycles.method.equilibria import (
+    Changing,
+    Equilibrium,
+    HopfPoint,
+    Lyapunov,
+    MachineCourse,
+    Resting,
+    equations,
+    equilibrium,
+    hopf_points,
+    lyapunov_coefficient,
+)
+from frbcli.cycles.method.follower import (
+    FLIP,
+    FOLD,
+    HOPF,
+    TORUS,
+    Cycle,
+    CycleError,
+    FoldFollower,
+    Follower,
+    OtherMesh,
+    cycle_error,
+    hopf_error,
+)
+from frbcli.cycles.method.machine import Machine
 from frbcli.scene.films import film_places
 
 RISE = Strides(first=0.02, shortest=1e-6, longest=0.2, points=400)

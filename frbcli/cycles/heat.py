@@ -15,19 +15,18 @@ from numpy.typing import NDArray
 
 from frbcli.arrays import Array, Complex
 from frbcli.case.schema import Case
-from frbcli.cycles.method.balance import harmonics_of, packed, through
+from frbcli.cycles.method.balance import Multipliers, harmonics_of, packed, through
 from frbcli.cycles.method.continuation import Equations, Unreachable
-from frbcli.cycles.method.courses import EquationsOf, MachineCourse
+from frbcli.cycles.method.equilibria import EquationsOf, MachineCourse
 from frbcli.cycles.method.film_heat import Ends, FilmHeats, film_heats, heats_at
-from frbcli.cycles.method.floquet import Multipliers
 from frbcli.cycles.method.machine import Machine, make_machine, transfer
 from frbcli.equilibrium.resting import RestingPosition
-from frbcli.equilibrium.warm_machine import WarmMachines
+from frbcli.equilibrium.static_machine import WarmMachines
 from frbcli.rotor.loads import largest_first
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.heat import heat_of
 from frbcli.scene.machine.system import System
-from frbcli.scene.planning.planned import Plan
+from frbcli.scene.planning.film_choice import Plan
 from frbcli.thermal.model import HeatModel, rates, viscosities_at
 
 # Of Newton's method; the longest of its steps and the last one, K: behind it 1e-11 K are left, for steps become shorter

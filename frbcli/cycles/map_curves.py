@@ -25,6 +25,7 @@ import numpy as np
 from scipy.linalg import lu_factor, lu_solve
 
 from frbcli.arrays import Array, Complex
+from frbcli.cycles.columns import SPEED, hertz
 from frbcli.cycles.diagram import Walk
 from frbcli.cycles.limit_cycles import Family, resting_over
 from frbcli.cycles.method.balance import Balance, left_out, unpacked
@@ -41,12 +42,10 @@ from frbcli.cycles.method.continuation import (
     step_from,
     unit_vector,
 )
-from frbcli.cycles.method.courses import MachineCourse
+from frbcli.cycles.method.equilibria import MachineCourse, resting_curve
 from frbcli.cycles.method.equilibria import equations as resting_equations
-from frbcli.cycles.method.equilibria import resting_curve
 from frbcli.cycles.method.follower import FoldFollower, with_harmonics
 from frbcli.cycles.method.machine import Machine, film_loads, transfer
-from frbcli.cycles.result import SPEED, hertz
 
 FAMILIES = 8  # that are kept, of values of the second number
 

@@ -15,7 +15,7 @@ from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.columns import Table, Tabular, table_of
 from frbcli.cycles.branch import first_place, follow_branch
-from frbcli.cycles.columns import map_columns
+from frbcli.cycles.columns import SpecialPoint, hertz, map_columns
 from frbcli.cycles.diagram import criticality_of, cycle_special, hopf_special
 from frbcli.cycles.limit_cycles import Family, check, positive_range
 from frbcli.cycles.map_curves import (
@@ -29,10 +29,8 @@ from frbcli.cycles.map_curves import (
     hopf_equations,
 )
 from frbcli.cycles.method.continuation import Equations, Place, Unreachable, located
-from frbcli.cycles.method.courses import MachineCourse
-from frbcli.cycles.method.equilibria import hopf_at, lyapunov_coefficient, settled
+from frbcli.cycles.method.equilibria import MachineCourse, hopf_at, lyapunov_coefficient, settled
 from frbcli.cycles.method.follower import FOLD, HOPF, amplitude, eccentricities, with_harmonics
-from frbcli.cycles.result import SpecialPoint, hertz
 from frbcli.errors import NotConverged, input_error
 
 BAUTIN, CUSP = "bautin", "cusp"

@@ -25,15 +25,7 @@ import numpy as np
 
 from frbcli.arrays import Array, Complex
 from frbcli.cycles.branch import Branch, follow_branch
-from frbcli.cycles.diagram import Observer
-from frbcli.cycles.method.balance import Balance, moments, motion_along, packed, unpacked
-from frbcli.cycles.method.continuation import Equations, Place, Unreachable, corrected, oriented, unit_vector
-from frbcli.cycles.method.courses import EquationsOf, MachineCourse
-from frbcli.cycles.method.equilibria import Equilibrium
-from frbcli.cycles.method.floquet import FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, Multipliers, monodromy
-from frbcli.cycles.method.follower import ASKED, FIRST_HARMONICS, FOLD, Cycle, Follower, largest
-from frbcli.cycles.method.machine import Machine, driven_motions
-from frbcli.cycles.result import (
+from frbcli.cycles.columns import (
     CycleBranch,
     CyclePoint,
     LimitCycles,
@@ -42,6 +34,22 @@ from frbcli.cycles.result import (
     UnbalancedWhirl,
     hertz,
 )
+from frbcli.cycles.diagram import Observer
+from frbcli.cycles.method.balance import (
+    FEWEST_INTERVALS,
+    INTERVALS_PER_HARMONIC,
+    Balance,
+    Multipliers,
+    moments,
+    monodromy,
+    motion_along,
+    packed,
+    unpacked,
+)
+from frbcli.cycles.method.continuation import Equations, Place, Unreachable, corrected, oriented, unit_vector
+from frbcli.cycles.method.equilibria import EquationsOf, Equilibrium, MachineCourse
+from frbcli.cycles.method.follower import ASKED, FIRST_HARMONICS, FOLD, Cycle, Follower, largest
+from frbcli.cycles.method.machine import Machine, driven_motions
 from frbcli.rotor.loads import largest_first
 
 DIFFERENCE = 1e-6  # of the pace

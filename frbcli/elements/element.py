@@ -9,8 +9,7 @@ from typing import ClassVar, Self
 
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
-from frbcli.rotor.assembly import GROUND, Link, NodeForce, PortLink
-from frbcli.rotor.body import Body
+from frbcli.rotor.assembly import GROUND, Body, Link, NodeForce, PortLink
 from frbcli.rotor.loads import LinearPart, Load
 
 Line = tuple[str, str, str]  # of a plan: choice, value, reason

@@ -19,9 +19,9 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.case.over_time import node_at
 from frbcli.case.schema import Case
-from frbcli.case.surroundings.forces import AppliedForce, Base, MagneticPull
-from frbcli.case.surroundings.places import node_at
+from frbcli.case.surroundings import AppliedForce, Base, MagneticPull
 from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.rotor.assembly import GROUND, Link, NodeForce
 from frbcli.rotor.loads import Harmonic, LinearPart, Load, linear_table

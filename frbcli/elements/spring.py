@@ -15,9 +15,9 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from frbcli.arrays import Array
+from frbcli.case.over_time import node_at
 from frbcli.case.schema import Case
-from frbcli.case.surroundings.forces import Spring
-from frbcli.case.surroundings.places import node_at
+from frbcli.case.surroundings import Spring
 from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.elements.forces import equal_places
 from frbcli.errors import Fault

@@ -30,10 +30,9 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
-from frbcli.case.surroundings.supports import KEY, SYMMETRIC_PLACE, Damper, Housing, Support, shape
+from frbcli.case.surroundings import KEY, SYMMETRIC_PLACE, Damper, Housing, Support, shape
 from frbcli.elements.element import Line, MachineElement, Parts, Site
-from frbcli.rotor.assembly import Link
-from frbcli.rotor.body import Body, free_body, point_mass
+from frbcli.rotor.assembly import Body, Link, free_body, point_mass
 from frbcli.rotor.loads import LinearPart
 from frbcli.units import display
 

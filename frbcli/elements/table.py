@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from frbcli.case.schema import Case
+from frbcli.elements.ball import BallBearingElement
 from frbcli.elements.coefficients import GivenCoefficients
 from frbcli.elements.element import MachineElement
 from frbcli.elements.forces import BaseElement, ForceElement, MagneticPullElement
 from frbcli.elements.pin import PinElement
-from frbcli.elements.rolling.ball import BallBearingElement
 from frbcli.elements.spring import SpringElement
 from frbcli.elements.supports import DamperElement, HousingElement, SupportElement
 from frbcli.elements.thrust import ThrustElement

@@ -16,8 +16,7 @@ from frbcli.case.schema import Case
 from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.elements.supports import NODE
 from frbcli.errors import Fault, NotConverged
-from frbcli.rotor.assembly import GROUND, Link
-from frbcli.rotor.body import COORDINATES, PLANE
+from frbcli.rotor.assembly import COORDINATES, GROUND, PLANE, Link
 from frbcli.rotor.loads import LinearPart
 
 if TYPE_CHECKING:

@@ -18,17 +18,15 @@ from frbcli.film.cavitation.law import FRONTS
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.grid import Mesh
 from frbcli.film.kinds.contract import EvenFilm, FieldFilm
-from frbcli.rotor.assembly import LinearRotor, Link, assembled
-from frbcli.rotor.body import point_mass
+from frbcli.rotor.assembly import LinearRotor, Link, assembled, point_mass
 from frbcli.scene.films import film_places, volume_film
-from frbcli.scene.forms.cells import CELLS as ON_CELLS
 from frbcli.scene.forms.form import FilmForm
+from frbcli.scene.forms.tilted import CELLS as ON_CELLS
 from frbcli.scene.gate.rule import STILL
 from frbcli.scene.machine.heat import warm_case, warm_system
 from frbcli.scene.machine.system import System, make_system
-from frbcli.scene.planning.film_choice import DEFAULT_MESH, choose_films, form_of
+from frbcli.scene.planning.film_choice import DEFAULT_MESH, Plan, choose_films, form_of
 from frbcli.scene.planning.plan import make_plan
-from frbcli.scene.planning.planned import Plan
 
 CELLS = (144, 20)  # around and along a section, equal: 0.1 % of the force up to an eccentricity of 0.9
 # How far coefficients are off is not even from mesh to mesh as edges of cavities cross cells, so that one coarser mesh

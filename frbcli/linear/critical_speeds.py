@@ -19,12 +19,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.analysis.peaks import prominent_peaks
+from frbcli.analysis.spectrum import prominent_peaks
 from frbcli.arrays import Array, Complex
 from frbcli.case.schema import Case
-from frbcli.equilibrium.coefficients import coefficients_of
 from frbcli.equilibrium.hopf import oscillating
-from frbcli.equilibrium.linearised import small_motions
+from frbcli.equilibrium.linearised import coefficients_of, small_motions
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import FrbError, NotConverged
 from frbcli.linear.stability_point import eigenvalues

@@ -22,12 +22,12 @@ from frbcli.linear.columns import NATURAL_MODES, SPEED
 from frbcli.rotor.loads import first_largest, ranks
 from frbcli.rotor.reduction import FreeModes, Reduction, ReductionError, whirl_modes
 from frbcli.scene.films import bearing_springs
-from frbcli.scene.gate.gate import require
+from frbcli.scene.gate.static import require
 from frbcli.scene.machine.rotor import element_springs, support_faults
-from frbcli.scene.shafts.table import shaft_of
+from frbcli.scene.machine.turbocharger import shaft_of
 
 if TYPE_CHECKING:
-    from frbcli.equilibrium.coefficients import RestingFilm
+    from frbcli.equilibrium.linearised import RestingFilm
     from frbcli.linear.stability_point import StabilityPoint
 
 SPEEDS = 25  # of the default sweep

@@ -27,8 +27,7 @@ import numpy as np
 from frbcli.arrays import Array, Complex, Truths
 from frbcli.case.schema import Case
 from frbcli.columns import Table, Tabular, spread_table
-from frbcli.equilibrium.coefficients import LEAST, coefficients_of
-from frbcli.equilibrium.linearised import linearised
+from frbcli.equilibrium.linearised import LEAST, coefficients_of, linearised
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import Fault, did_you_mean, input_error
 from frbcli.linear.columns import RESPONSE_POINTS
@@ -49,12 +48,12 @@ from frbcli.linear.stability_point import StabilityPoint
 from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.loads import BOW, Harmonic
 from frbcli.scene.changes import after_losses, has_lost, loss_times
-from frbcli.scene.gate.gate import require
+from frbcli.scene.course import default_speeds
 from frbcli.scene.gate.rule import FILMS, RANGE
+from frbcli.scene.gate.static import require
 from frbcli.scene.machine.rotor import element_forces, harmonics_of
 from frbcli.scene.machine.system import System, elastic_shell
-from frbcli.scene.shafts.table import shaft_of
-from frbcli.scene.speeds import default_speeds
+from frbcli.scene.machine.turbocharger import shaft_of
 
 UNBALANCE = "unbalance"  # as excitation
 SPEEDS = 120  # of the default sweep

@@ -21,12 +21,18 @@ from frbcli.columns import Table, Tabular, named, table_of
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.linear.columns import AXIAL, film_columns, point_columns
-from frbcli.linear.stability_point import StabilityPoint, point_at_rest, with_errors
-from frbcli.linear.threshold import Threshold, deciding, find_threshold
-from frbcli.scene.gate.gate import require
+from frbcli.linear.stability_point import (
+    StabilityPoint,
+    Threshold,
+    deciding,
+    find_threshold,
+    point_at_rest,
+    with_errors,
+)
+from frbcli.scene.course import default_speeds
 from frbcli.scene.gate.rule import FILMS, RANGE, STABILITY
+from frbcli.scene.gate.static import require
 from frbcli.scene.machine.system import System
-from frbcli.scene.speeds import default_speeds
 from frbcli.scene.supply import advised
 from frbcli.units import SpeedUnit
 

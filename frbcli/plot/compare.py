@@ -10,9 +10,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.analysis.ridges import Ridges
+from frbcli.analysis.resonance import Ridges
 from frbcli.analysis.signals import films, joined
-from frbcli.case.course.run import speed_unit_of
+from frbcli.case.run import speed_unit_of
 from frbcli.film.cavitation.table import label_of
 from frbcli.plot.signals import MICRO, curve, ends
 from frbcli.plot.style import (
@@ -28,7 +28,7 @@ from frbcli.plot.style import (
     styled,
 )
 from frbcli.plot.waterfall import draw_levels, level_label, run_spectra
-from frbcli.results.columns import touching_name
+from frbcli.results.records import touching_name
 from frbcli.results.store import Run
 from frbcli.studies.against import AgainstMeasured
 from frbcli.studies.compare import Comparison, Variant

@@ -11,13 +11,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.analysis.orders.order_tracking import OrderTrack
+from frbcli.analysis.order_tracking import OrderTrack
 from frbcli.analysis.signals import joined, located
 from frbcli.analysis.spectrum import Direction
 from frbcli.arrays import Array
 from frbcli.plot.signals import MICRO, Envelope, EnvelopeColumn, curve, cut, extremes, heading, labels
 from frbcli.plot.style import COLOURS, legend_below, new_figure, styled
-from frbcli.results.files.container import refuse
+from frbcli.results.container import refuse
 from frbcli.results.records import SPEED, Signal, pieces
 from frbcli.results.store import Run
 
@@ -128,7 +128,7 @@ def orders_figure(
     """The peak amplitude of each order of a point, with a panel each where they differ by more than APART;
     a run that goes up and down is drawn to and fro.
 
-    tracks: of the same point, by `frbcli.analysis.orders.order_tracking.order_tracks`; log: logarithmic amplitude.
+    tracks: of the same point, by `frbcli.analysis.order_tracking.order_tracks`; log: logarithmic amplitude.
     """
     title, subtitle = heading([run])
     point = joined(*located(run, tracks[0].signal)).replace("_", " ")

@@ -19,14 +19,13 @@ from matplotlib.patches import Circle
 from matplotlib.ticker import MaxNLocator
 
 from frbcli.analysis.signals import films, joined, points, speed_at
-from frbcli.case.course.run import speed_unit_of
+from frbcli.case.run import speed_unit_of
 from frbcli.plot.run.motion import LAST_s
 from frbcli.plot.signals import MICRO, at_times, cut, ends, heading, motion, shell
 from frbcli.plot.style import BLUE, GREY, LEVEL_MAP, VERMILION, new_figure, refused, styled
-from frbcli.results.files.container import refuse
-from frbcli.results.files.write import MARK, PICTURES, require_places, written
-from frbcli.results.kept_films import KeptFilm, kept_film
-from frbcli.results.store import Run
+from frbcli.results.container import refuse
+from frbcli.results.store import KeptFilm, Run, kept_film
+from frbcli.results.write import MARK, PICTURES, require_places, written
 
 FORMATS = (".gif", ".mp4")
 FRAMES, PER_SECOND = 80, 20

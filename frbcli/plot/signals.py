@@ -15,13 +15,13 @@ from typing import Any, Protocol
 import numpy as np
 
 from frbcli.analysis.events import find_events
-from frbcli.analysis.orders.order_tracking import CELLS
+from frbcli.analysis.order_tracking import CELLS
 from frbcli.analysis.signals import bearing_clearance, films, in_film, located, point_of, points, speed_at
 from frbcli.arrays import Array
-from frbcli.case.reading.text import TomlFault, parse
+from frbcli.case.reading.settings import TomlFault, parse
 from frbcli.film.cavitation.table import label_of
 from frbcli.plot.style import MOST_MARKED, plain
-from frbcli.results.files.container import refuse
+from frbcli.results.container import refuse
 from frbcli.results.records import SPEED, TIME, Signal, pieces
 from frbcli.results.store import Run
 

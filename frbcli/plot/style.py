@@ -26,7 +26,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from frbcli.errors import InputError, input_error, printable
-from frbcli.results.files.write import MARK, PICTURES, require_places, write
+from frbcli.results.write import MARK, PICTURES, require_places, write
 
 # Okabe and Ito: distinguishable also for the colour-blind
 BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"

@@ -21,13 +21,13 @@ from matplotlib.text import Annotation
 from matplotlib.ticker import LogLocator, MaxNLocator, ScalarFormatter
 from numpy.typing import NDArray
 
-from frbcli.analysis.orders.subsynchronous import with_whirl_names
 from frbcli.analysis.signals import RingSpeed, joined, located, points, samples
 from frbcli.analysis.spectrum import FROM_SPEED, PADDING, Direction, Spectrogram, window_length
 from frbcli.analysis.spectrum import waterfall as spectra
+from frbcli.analysis.subsynchronous import with_whirl_names
 from frbcli.arrays import Array
-from frbcli.case.course.run import speed_unit_of
 from frbcli.case.reading.load import load_case_text
+from frbcli.case.run import speed_unit_of
 from frbcli.errors import InputError
 from frbcli.plot.cascade import draw_cascade
 from frbcli.plot.curves import WORDS, Over
@@ -52,9 +52,8 @@ from frbcli.plot.style import (
     styled,
     with_subscripts,
 )
-from frbcli.results.columns import event_name
-from frbcli.results.files.container import refuse
-from frbcli.results.records import SPEED, TIME
+from frbcli.results.container import refuse
+from frbcli.results.records import SPEED, TIME, event_name
 from frbcli.results.store import Run
 from frbcli.scene.machine.rotor import harmonics_of
 from frbcli.units import SpeedUnit

@@ -1,9 +1,14 @@
-"""The report of a run: one page that needs nothing else, neither files nor a network."""
+"""The report of a run: one page that needs nothing else, neither files nor a network.
+
+The waterfall of a page: an image with axes of its own, and the numbers that the page's script reads out.
+"""
 
 from __future__ import annotations
 
 import base64
 import datetime
+import json
+import re
 import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -15,31 +20,169 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from frbcli import __version__
-from frbcli.analysis.orders.subsynchronous import with_whirl_names
 from frbcli.analysis.signals import films
-from frbcli.case.course.run import speed_unit_of
-from frbcli.case.reading.listing import values
+from frbcli.analysis.subsynchronous import with_whirl_names
+from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case_text
+from frbcli.case.reading.shipped import values
+from frbcli.case.run import speed_unit_of
 from frbcli.errors import FrbError, InputError, input_error, printable
 from frbcli.plot.run.motion import displacement_figure, eccentricity_figure
 from frbcli.plot.run.quantities import SUBJECTS, quantity_figure
-from frbcli.plot.run.ring_speed import ring_speed_figure
-from frbcli.plot.run.speeds import speeds_figure, times_of_speeds
-from frbcli.plot.run.summary import FEWEST_SAMPLES
+from frbcli.plot.run.summary import FEWEST_SAMPLES, ring_speed_figure, speeds_figure, times_of_speeds
 from frbcli.plot.signals import bearing_of, clearance, ends, events, heading
 from frbcli.plot.style import Picture, narrowed, picture
-from frbcli.plot.waterfall import level_label, levels, reading, run_spectra
-from frbcli.report.sketch import film_sketches, rotor_sketch
-from frbcli.report.waterfall import Waterfall, page_waterfall
-from frbcli.results.columns import amplitude_text, event_name, frequency_text
-from frbcli.results.files.write import MARK, PAGE, require_places, write
-from frbcli.results.records import SPEED
+from frbcli.plot.waterfall import (
+    Levels,
+    LEVELS_dB,
+    LOWEST_dB,
+    STEP_dB,
+    level_label,
+    levels,
+    reading,
+    run_spectra,
+    scale_colours,
+    ticks,
+)
+from frbcli.report.sketch import curve, drawing, element, film_sketches, line, rotor_sketch, text
+from frbcli.results.records import SPEED, amplitude_text, event_name, frequency_text
 from frbcli.results.store import Run
-from frbcli.runs.errors.account import about_certainty, account, grows_late
-from frbcli.runs.record.header import FILM_SIGNALS, POWER
+from frbcli.results.write import MARK, PAGE, require_places, write
+from frbcli.runs.header import FILM_SIGNALS, POWER
+from frbcli.runs.second_run import about_certainty, account, grows_late
 from frbcli.scene.machine.findings import Findings, findings
 from frbcli.scene.planning.plan import make_plan
-from frbcli.units import SpeedUnit
+from frbcli.units import HERTZ, SpeedUnit
+
+WIDTH, HEIGHT = 900.0, 500.0
+LEFT, RIGHT, TOP, BOTTOM = 62.0, 90.0, 84.0, 46.0
+FLAG_ROWS, FLAG_ROW = 4, 16.0  # of the numbers of events above the picture
+BAR, BAR_WIDTH = WIDTH - RIGHT + 18.0, 14.0
+FLAG = 7.5  # radius of the number of an event
+
+
+@dataclass(frozen=True)
+class Waterfall:
+    """svg: the picture; data: JSON for the script, see waterfall.js."""
+
+    svg: str
+    data: str
+
+
+def page_waterfall(
+    spectra: Levels, clearance: float, events: Sequence[dict[str, Any]], unit: SpeedUnit = HERTZ
+) -> Waterfall:
+    """The waterfall of the levels of a run over the clearance in m; events: of the run, numbered from 1 on; unit: of
+    the rotor speeds above it."""
+    return Waterfall(_picture(spectra, events, unit), _numbers(spectra, clearance))
+
+
+def _numbers(spectra: Levels, clearance: float) -> str:
+    """Times and speeds per column, frequencies per row and levels as bytes, row by row."""
+    return json.dumps(
+        {
+            "box": [LEFT, TOP, WIDTH - LEFT - RIGHT, HEIGHT - TOP - BOTTOM],
+            "times": [round(float(value), 5) for value in spectra.time_s],
+            "speeds": [round(float(value), 4) for value in spectra.speed_Hz],
+            "frequencies": [round(float(value), 4) for value in spectra.frequency_Hz],
+            "lowest": LOWEST_dB,
+            "step": STEP_dB,
+            "clearance": clearance,
+            "levels": base64.b64encode(spectra.level.tobytes()).decode(),
+        }
+    )
+
+
+def _picture(spectra: Levels, events: Sequence[dict[str, Any]], unit: SpeedUnit) -> str:
+    right, bottom = WIDTH - RIGHT, HEIGHT - BOTTOM
+    begin, end = _edges(spectra.time_s)
+    top_Hz = _edges(spectra.frequency_Hz)[1]
+
+    def across(t: float) -> float:
+        return LEFT + (right - LEFT) * (t - begin) / (end - begin)
+
+    def up(f: float) -> float:
+        return bottom - (bottom - TOP) * f / top_Hz
+
+    picture = base64.b64encode(spectra.image).decode()
+    parts = [
+        element(
+            "image", x=LEFT, y=TOP, width=right - LEFT, height=bottom - TOP, preserveAspectRatio="none",
+            href=f"data:image/png;base64,{picture}",
+        )
+    ]  # fmt: skip
+    for name, frequency in spectra.lines:
+        shown = [(across(t), up(f)) for t, f in zip(spectra.time_s.tolist(), np.abs(frequency).tolist(), strict=True)]
+        inside = [point for point in shown if point[1] >= TOP][:: max(1, len(shown) // 200)]
+        if len(inside) > 1:
+            parts.append(curve(inside, "order"))
+            x, y = inside[int(0.86 * len(inside))]
+            label = re.sub("_(.)", r'<tspan font-size="9" dy="3">\1</tspan><tspan dy="-3">&#8203;</tspan>', name)
+            parts.append(element("text", label, x=x - 4.0, y=y - 5.0, kind="ordername", text_anchor="end"))
+    for t in ticks(begin, end):
+        parts.append(line(across(t), bottom, across(t), bottom + 4.0, "tick"))
+        parts.append(text(across(t), bottom + 16.0, f"{t:g}"))
+        speed = float(np.interp(t, spectra.time_s, spectra.speed_Hz))
+        parts.append(text(across(t), TOP - 8.0, unit.number(speed), "small"))
+    for f in ticks(0.0, top_Hz):
+        parts.append(line(LEFT - 4.0, up(f), LEFT, up(f), "tick"))
+        parts.append(text(LEFT - 8.0, up(f) + 4.0, f"{f:g}", anchor="end"))
+    parts.append(text(0.5 * (LEFT + right), HEIGHT - 8.0, "time in s"))
+    parts.append(text(LEFT - 8.0, TOP - 8.0, f"rotor, {unit.name}", "small", "end"))
+    parts.append(
+        element("text", "frequency in Hz", kind="label", text_anchor="middle",
+                transform=f"translate(16 {0.5 * (TOP + bottom):.0f}) rotate(-90)")
+    )  # fmt: skip
+    parts += _bar(bottom)
+    parts += _flags(events, across, bottom, (begin, end))
+    parts.append(element("g", id="pointer"))
+    width, height = right - LEFT, bottom - TOP
+    parts.append(element("rect", x=LEFT, y=TOP, width=width, height=height, id="sense", fill="transparent"))
+    return drawing(WIDTH, HEIGHT, parts, "waterfall: amplitude over time and frequency")
+
+
+def _bar(bottom: float) -> list[str]:
+    """The scale of the levels."""
+    colours = scale_colours()
+    low, high = LEVELS_dB
+    step = (bottom - TOP) / len(colours)
+    parts = [
+        element("rect", x=BAR, y=bottom - (i + 1) * step, width=BAR_WIDTH, height=step + 0.5, fill=colour)
+        for i, colour in enumerate(colours)
+    ]
+    for level in ticks(low, high, 6):
+        y = bottom - (bottom - TOP) * (level - low) / (high - low)
+        parts.append(line(BAR + BAR_WIDTH, y, BAR + BAR_WIDTH + 4.0, y, "tick"))
+        parts.append(text(BAR + BAR_WIDTH + 7.0, y + 4.0, f"{level:g}", anchor="start"))
+    parts.append(text(BAR + 0.5 * BAR_WIDTH, bottom + 16.0, "dB"))
+    return parts
+
+
+def _flags(events: Sequence[dict[str, Any]], across: Any, bottom: float, span: tuple[float, float]) -> list[str]:
+    """Numbered lines of the events; numbers that would meet move to a higher row, and where all rows are full the
+    line has none."""
+    lines, flags, free = list[str](), list[str](), [-1e9] * FLAG_ROWS
+    for number, event in enumerate(events, start=1):
+        if not span[0] <= event["t_s"] <= span[1]:
+            continue
+        x = across(event["t_s"])
+        row = next((row for row, until in enumerate(free) if x - FLAG > until), None)
+        if row is None:
+            lines.append(line(x, TOP, x, bottom, "event"))
+            continue
+        free[row] = x + FLAG
+        y = TOP - 26.0 - FLAG_ROW * row
+        lines.append(line(x, y + FLAG, x, bottom, "event"))
+        flags.append(element("circle", cx=x, cy=y, r=FLAG, kind="flag"))
+        flags.append(text(x, y + 3.5, str(number), "flagname"))
+    return lines + flags
+
+
+def _edges(middles: Array) -> tuple[float, float]:
+    """From the beginning of the first to the end of the last of even spans, by their middles."""
+    half = 0.5 * float(middles[-1] - middles[0]) / max(len(middles) - 1, 1)
+    return float(middles[0]) - half, float(middles[-1]) + half
+
 
 MOST_EVENTS = 60  # of the table and the picture
 CHOSEN = 4  # moments of orbits and spectra, where none are asked for

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 from frbcli.errors import InputError, input_error
-from frbcli.results.files.write import MARK, ROSS, TABLES, harmless_text, mark_table, write, written
 from frbcli.results.records import Signal, pieces
 from frbcli.results.store import Run
+from frbcli.results.write import MARK, ROSS, TABLES, harmless_text, mark_table, write, written
 
 if TYPE_CHECKING:
     import pandas as pd

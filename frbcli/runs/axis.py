@@ -9,12 +9,11 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
-from frbcli.elements.collar import Collar, collar_of, rests_over_speed
-from frbcli.elements.collar_motion import axial_motion
-from frbcli.results.columns import AXIAL_SIGNALS
+from frbcli.elements.collar import Collar, axial_motion, collar_of, rests_over_speed
+from frbcli.results.records import AXIAL_SIGNALS
 from frbcli.rotor.loads import SpeedProfile
 from frbcli.scene.machine.rotor import collar_tilt
-from frbcli.scene.shafts.table import shaft_of
+from frbcli.scene.machine.turbocharger import shaft_of
 
 SLOWER = 1e-3  # share of a speed by which the slowest one that is known may be missed
 POSITION, THICKNESS, LOSS = (column.name for column in AXIAL_SIGNALS)

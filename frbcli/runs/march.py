@@ -11,14 +11,11 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
-from frbcli.compilation import compiled_s, working_time
+from frbcli.compiled import compiled_s, working_time
 from frbcli.results.store import Run
 from frbcli.rotor.loads import SpeedProfile
-from frbcli.runs.drive import begin_to_turn, brakes, drive_signals, loop_drive, rotation_at, rotation_of
-from frbcli.runs.errors.error_budget import FewerCells, budget_of_segments, grows_from, quick_budget, summed
-from frbcli.runs.heat import RunHeat
-from frbcli.runs.inputs import FilmNumbers, RunInputs, films_change, supplied
-from frbcli.runs.record.films import (
+from frbcli.runs.error_budget import FewerCells, budget_of_segments, grows_from, quick_budget, summed
+from frbcli.runs.films import (
     OF_THE_STEPS,
     KeptFilms,
     RunWear,
@@ -28,8 +25,20 @@ from frbcli.runs.record.films import (
     port_signals,
     tilt_signals,
 )
-from frbcli.runs.record.header import FLOW, named, pin_signals, recorded, ring_names
-from frbcli.runs.record.restored import WrongCheckpoint, array, check_samples, restored
+from frbcli.runs.header import FLOW, named, pin_signals, recorded, ring_names
+from frbcli.runs.heat import RunHeat, WrongCheckpoint, array, check_samples, restored
+from frbcli.runs.inputs import (
+    FilmNumbers,
+    RunInputs,
+    begin_to_turn,
+    brakes,
+    drive_signals,
+    films_change,
+    loop_drive,
+    rotation_at,
+    rotation_of,
+    supplied,
+)
 from frbcli.runs.start import (
     control_of,
     first_state,
@@ -41,15 +50,15 @@ from frbcli.runs.start import (
     with_unbalance,
 )
 from frbcli.scene.cost import expected_cost, film_error_s
-from frbcli.scene.coupling import coupling_named
-from frbcli.scene.course import expected_course
+from frbcli.scene.course import coupling_named, expected_course
 from frbcli.scene.machine.system import Segment, System, make_segments
-from frbcli.scene.planning.planned import Plan
+from frbcli.scene.planning.film_choice import Plan
 from frbcli.scene.supply import advised
 from frbcli.solve.cosimulation import advance_in_turn
 from frbcli.solve.state import (
     CONTACT,
     FINISHED,
+    METHODS,
     OUTPUTS,
     REJECTED,
     RUNNING,
@@ -60,9 +69,7 @@ from frbcli.solve.state import (
     TURNS,
     LoopOutput,
 )
-from frbcli.solve.tableau import METHODS
-from frbcli.solve.time_loop import advance
-from frbcli.solve.watched import NOTES, Notes, advance_watched
+from frbcli.solve.time_loop import NOTES, Notes, advance, advance_watched
 
 if TYPE_CHECKING:
     from frbcli.runs.axis import RunAxis

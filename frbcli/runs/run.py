@@ -11,34 +11,26 @@ from pathlib import Path
 from frbcli.analysis.events import find_events
 from frbcli.case.reading.load import describes
 from frbcli.case.schema import Case
-from frbcli.compilation import working_time
+from frbcli.compiled import working_time
 from frbcli.elements.spring import LAWS, law_record
 from frbcli.errors import InputError, RunFileError, input_error
 from frbcli.linear.critical_speeds import linear_critical_speeds
-from frbcli.results.files.container import refuse
-from frbcli.results.files.lock import locked
+from frbcli.results.container import locked, refuse
 from frbcli.results.records import untold
 from frbcli.results.store import Header, Run, RunWriter, check_output, read_run
 from frbcli.rotor.loads import SpeedProfile
-from frbcli.runs.errors.error_budget import quiet_until
-from frbcli.runs.errors.second_run import (
-    SECOND_RUN,
-    SECOND_RUN_PREDICTED,
-    in_finer_steps,
-    on_fewer_cells,
-    with_second_run,
-)
+from frbcli.runs.error_budget import quiet_until
+from frbcli.runs.header import PROGRAM, header, version_of
+from frbcli.runs.heat import WrongCheckpoint
 from frbcli.runs.march import March, Progress
-from frbcli.runs.record.header import PROGRAM, header, version_of
 from frbcli.runs.record.interrupt import held_back
-from frbcli.runs.record.restored import WrongCheckpoint
+from frbcli.runs.second_run import SECOND_RUN, SECOND_RUN_PREDICTED, in_finer_steps, on_fewer_cells, with_second_run
 from frbcli.scene.cost import ExpectedCost
 from frbcli.scene.cost_limits import require_affordable
 from frbcli.scene.machine.system import Segment, make_segments
-from frbcli.scene.planning.eccentricity import run_down_profile, run_up_profile
-from frbcli.scene.planning.error_runs import cost_of_run, is_cheap, second_run_s
-from frbcli.scene.planning.plan import make_plan
-from frbcli.scene.planning.planned import Plan
+from frbcli.scene.planning.cell_choice import run_down_profile, run_up_profile
+from frbcli.scene.planning.film_choice import Plan
+from frbcli.scene.planning.plan import cost_of_run, is_cheap, make_plan, second_run_s
 from frbcli.solve.state import CONTACT, FINISHED, OVERHEATED, RUNNING, STANDSTILL
 
 INTERRUPTED = "interrupted"

@@ -16,30 +16,25 @@ from dataclasses import replace
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.case.course.run import Start
+from frbcli.case.run import Start
 from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import NotConverged
-from frbcli.film.cells.motion import turned
+from frbcli.film.cells.film import turned
 from frbcli.film.roughness.asperities import Asperities
-from frbcli.rotor.assembly import LinearRotor, held_rotor, unbalance_shares
-from frbcli.rotor.body import PLANE
+from frbcli.rotor.assembly import PLANE, LinearRotor, held_rotor, unbalance_shares
 from frbcli.rotor.loads import SpeedProfile, loads_at, no_part
 from frbcli.rotor.port import port_forces
-from frbcli.runs.drive import rotation_of
-from frbcli.runs.record.films import displacement, grid_angle
-from frbcli.scene.coupling import coupling_named
-from frbcli.scene.course import longest_step, steps_of_a_turn
+from frbcli.runs.films import displacement, grid_angle
+from frbcli.runs.inputs import rotation_of
+from frbcli.scene.course import coupling_named, longest_step, steps_of_a_turn
 from frbcli.scene.machine.system import System
-from frbcli.scene.planning.planned import Plan
+from frbcli.scene.planning.film_choice import Plan
 from frbcli.solve.cosimulation import CO_NUMBERS, FILMS_REMEMBER, MICRO_REJECTED, MICRO_STEP, MICRO_STEPS
 from frbcli.solve.drive import DrivenRotor
 from frbcli.solve.films.cells import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
-from frbcli.solve.inputs import Inputs
-from frbcli.solve.ring_spin import RADIUS, STIFFNESS
-from frbcli.solve.stage.contact import RoughContact, make_cones
-from frbcli.solve.stage.loads import varying_loads
-from frbcli.solve.stage.ports import make_ports
+from frbcli.solve.inputs import RADIUS, STIFFNESS, Inputs
+from frbcli.solve.stage.contact import RoughContact, make_cones, make_ports, varying_loads
 from frbcli.solve.state import (
     ERROR_BEFORE,
     ERROR_SPANS,

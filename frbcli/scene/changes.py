@@ -11,9 +11,9 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TypeVar
 
-from frbcli.case.course.time_tables import inputs_of
 from frbcli.case.film import FilmGeometry
 from frbcli.case.model import Model, altered
+from frbcli.case.reading.time_tables import inputs_of
 from frbcli.case.rotor import Loss
 from frbcli.case.schema import Case
 from frbcli.errors import Fault

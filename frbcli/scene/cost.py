@@ -28,12 +28,10 @@ from frbcli.rotor.reduction import DENSE, MOST
 from frbcli.scene.changes import step_times
 from frbcli.scene.course import STAGES, RunCourse, expected_course, runs_nearly_dry, whirl_speed
 from frbcli.scene.films import film_places, full_films, rings, turning_rings
-from frbcli.scene.forms.form import FilmForm
-from frbcli.scene.forms.tables import TABLE
+from frbcli.scene.forms.form import TABLE, FilmForm
 from frbcli.scene.machine.rotor import changes_with_speed, element_parts
-from frbcli.scene.planning.film_choice import form_of
-from frbcli.scene.planning.planned import Plan
-from frbcli.scene.shafts.table import shaft_of
+from frbcli.scene.machine.turbocharger import shaft_of
+from frbcli.scene.planning.film_choice import Plan, form_of
 
 Kernels = Literal["loop", "rest", "both"]
 

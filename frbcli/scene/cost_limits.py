@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from frbcli.case.course.run import MACRO_STEP, STEPS_PER_REVOLUTION
 from frbcli.case.model import altered
+from frbcli.case.run import MACRO_STEP, STEPS_PER_REVOLUTION
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.scene.changes import step_times
 from frbcli.scene.cost import DAY_s, ExpectedCost, before_s, clock, rotor_size
+from frbcli.scene.planning.film_choice import Plan
 from frbcli.scene.planning.plan import make_plan
-from frbcli.scene.planning.planned import Plan
 
 LONGEST_RUN_s = 30.0 * DAY_s  # CPU time
 LONGEST_PREPARATION_s = 3_600.0

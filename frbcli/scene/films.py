@@ -1,6 +1,13 @@
 """The films of a machine, the section of each that has to be solved, and how they turn with rotor and rings.
 
 Films are in the order in which the time loop sees them.
+
+The tilt of a journal against its shell in a kinematic test, and where it closes the gap.
+
+A tilt (t_x, t_y) is a small rotation about the axes through the middle of the bearing: the centre of the journal at z
+lies at (x + z t_y, y - z t_x).
+
+The channels of floating rings: the pressure of their feed holes, or how they couple the two films of a ring.
 """
 
 from __future__ import annotations
@@ -18,13 +25,212 @@ from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.case.supplies import MIDDLE, Bores
 from frbcli.elements.supports import DamperElement
+from frbcli.errors import Fault
 from frbcli.film.cavitation.law import FilmOil, Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cells.channels.channel import Channel, FeedHole, channel_resistance
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.grid import run_grid
-from frbcli.film.gap import NO_BATH, Diffusion, Section, ends_at_ambient, whole_width
-from frbcli.scene.channels import centrifugal_pressure, coupled, feed_holes_in_outer_film
+from frbcli.film.gap import NO_BATH, Diffusion, Section, ends_at_ambient, smallest_gap, whole_width
+from frbcli.scene.gate.rule import ROTATION, SQUEEZE
+from frbcli.scene.keys import bearing_key
+
+Pair = tuple[float, float]
+NONE = (0.0, 0.0)
+AROUND = 36  # places of a whirl, between which only lobed shells have less gap
+
+
+def tilt_of(case: Case) -> Pair:
+    """Tilt of the journal against the shell in rad."""
+    motion, bearing = case.motion, case.bearings[0]
+    journal = NONE if motion is None or motion.tilt is None else motion.tilt
+    shell = bearing.misalignment if isinstance(bearing, SingleFilmBearing) else None
+    return journal if shell is None else (journal[0] - shell[0], journal[1] - shell[1])
+
+
+def tilt_rate_of(case: Case) -> Pair:
+    """How fast the journal tilts, in rad/s."""
+    motion = case.motion
+    return NONE if motion is None or motion.tilt_rate is None else motion.tilt_rate
+
+
+def tilts(case: Case) -> bool:
+    """Whether the gap of the bearing, or its rate of change, differs along the axis."""
+    return tilt_of(case) != NONE or tilt_rate_of(case) != NONE
+
+
+def states_moment(case: Case) -> bool:
+    """Whether a kinematic test states the moment of the film force."""
+    return case.motion is not None and (case.motion.states_moment or tilts(case))
+
+
+def slope_of(tilt: Pair, section: Section) -> Pair:
+    """Growth of the displacement over the clearance, or of its rate, over the width of the whole bearing."""
+    length = section.bearing_width / section.clearance
+    return length * tilt[1] + 0.0, -length * tilt[0] + 0.0  # no negative zero
+
+
+def gaps_at_ends(section: Section, d: Pair, slope: Pair) -> Pair:
+    """The least H at the ends z < 0 and z > 0 of a bearing; in between it is linear in z."""
+    at = [(d[0] + side * slope[0], d[1] + side * slope[1]) for side in (-0.5, 0.5)]
+    return smallest_gap(section, at[0]), smallest_gap(section, at[1])
+
+
+def displacement_of(case: Case) -> Pair:
+    """Displacement over the clearance that a rotation is given."""
+    assert case.motion is not None
+    e, angle = case.motion.eccentricity or 0.0, case.motion.angle
+    return e * math.cos(angle), e * math.sin(angle)
+
+
+def places_of(case: Case, test: str) -> list[Pair]:
+    """Displacements over the clearance at which a test brings the ends of the journal nearest to the shell: the gap, a
+    concave function of them, is least at the ends of a line and on the rim of a disk."""
+    assert case.motion is not None
+    e, toward = case.motion.eccentricity or 0.0, tilt_of(case)
+    if test == ROTATION:
+        return [displacement_of(case)]
+    if test == SQUEEZE:
+        return [(0.0, -e), (0.0, e)]
+    begin = math.atan2(-toward[0], toward[1])  # the direction of the slope
+    angles = (begin + 2.0 * math.pi * i / AROUND for i in range(AROUND))
+    return [(e * math.cos(angle), e * math.sin(angle)) for angle in angles]
+
+
+def least_gaps(section: Section, places: list[Pair], slope: Pair) -> Pair:
+    """The least of gaps_at_ends of all places."""
+    low, high = zip(*(gaps_at_ends(section, place, slope) for place in places), strict=True)
+    return min(low), min(high)
+
+
+def tilt_key(case: Case) -> tuple[str, str]:
+    """The key that tilts the journal against the shell, and its value."""
+    for key in ("tilt", "tilt_rate"):
+        given = getattr(case.motion, key, None)
+        if given is not None and any(given):
+            return f"motion.{key}", as_text(given)
+    tilt = tilt_of(case)
+    return f"{bearing_key(case, 0)}.misalignment", as_text((-tilt[0], -tilt[1]))
+
+
+def misaligned(case: Case) -> Iterator[tuple[str, str]]:
+    """The key and the value of each shell that is not in line."""
+    for index, bearing in enumerate(case.bearings):
+        if bearing.misalignment is not None and any(bearing.misalignment):
+            yield f"{bearing_key(case, index)}.misalignment", as_text(bearing.misalignment)
+
+
+def as_text(given: Pair) -> str:
+    """A tilt in rad, or its rate, as a fault shows it."""
+    return f"{given[0]:.6g}, {given[1]:.6g}"
+
+
+INLETS = "a groove around one end of the outer film, or an end in an oil bath"
+
+
+def coupled(bearing: FloatingRingBearing) -> bool:
+    """Whether the channels of a ring couple its films."""
+    return bearing.channels == "coupled"
+
+
+def coupled_rings(case: Case) -> Iterator[tuple[str, FloatingRingBearing]]:
+    """The rings whose channels couple their films, each with the key that says so."""
+    for index, bearing in enumerate(case.bearings):
+        if isinstance(bearing, FloatingRingBearing) and coupled(bearing):
+            yield f"{bearing_key(case, index)}.channels", bearing
+
+
+def coupling_faults(case: Case, problem: str, remedy: str) -> Iterator[Fault]:
+    """The faults of all channels that couple films, where these are not modelled."""
+    return (Fault(key, "coupled", None, problem, remedy) for key, _ in coupled_rings(case))
+
+
+def opens_to_groove(bearing: FloatingRingBearing) -> bool:
+    """Whether the channels open to a groove around the middle of the outer film, which holds its pressure."""
+    return bearing.outer.supply.splits
+
+
+def feed_holes_in_outer_film(bearing: FloatingRingBearing) -> Bores | None:
+    """The feed holes of the outer film at the channels; None if these are not coupled or open to a groove."""
+    supply = bearing.inner.supply.channels
+    if supply is None or not coupled(bearing) or opens_to_groove(bearing):
+        return None
+    offset = (supply.axial_position - MIDDLE) * bearing.inner.width / bearing.outer.width
+    return altered(supply, {"axial_position": MIDDLE + offset})
+
+
+def centrifugal_pressure(case: Case, bearing: FloatingRingBearing) -> float:
+    """Centrifugal pressure of a channel over the square of the ring speed, (4.27), Pa s^2."""
+    if not bearing.centrifugal_pressure:
+        return 0.0
+    inside, outside = 0.5 * bearing.inner.diameter, 0.5 * bearing.outer.diameter
+    return 0.5 * case.oil.density * (outside**2 - inside**2)
+
+
+def resistance(case: Case, bearing: FloatingRingBearing) -> float:
+    """Flow resistance of one channel in Pa s / m^3."""
+    supply = bearing.inner.supply.channels
+    assert supply is not None
+    length = 0.5 * (bearing.outer.diameter - bearing.inner.diameter)
+    return channel_resistance(supply.diameter, length, case.oil_viscosity)
+
+
+def coupled_channels(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[Channel, ...]:
+    """The coupled channels of all rings. volumes: of all films in their order, the feed holes as their last holes."""
+    channels: list[Channel] = []
+    film = 0
+    for bearing in case.bearings:
+        if not isinstance(bearing, FloatingRingBearing):
+            film += 1
+            continue
+        supply = bearing.inner.supply.channels
+        if coupled(bearing) and supply is not None:
+            inner = volumes[film].section.holes[-supply.count :]
+            outer = volumes[film + 1].section.holes[-supply.count :]
+            for index in range(supply.count):
+                channels.append(
+                    Channel(
+                        inner=FeedHole(film, inner[index]),
+                        outer=None if opens_to_groove(bearing) else FeedHole(film + 1, outer[index]),
+                        resistance=resistance(case, bearing),
+                        groove_pressure=bearing.outer.supply.gauge(case.oil.ambient_pressure),
+                        centrifugal=centrifugal_pressure(case, bearing),
+                    )
+                )
+        film += 2
+    return tuple(channels)
+
+
+def channel_faults(case: Case) -> Iterator[Fault]:
+    """The faults of coupled channels."""
+    for key, bearing in coupled_rings(case):
+        problem, remedy = _problem(bearing)
+        if problem:
+            yield Fault(key, "coupled", None, problem, remedy)
+
+
+def _problem(bearing: FloatingRingBearing) -> tuple[str, str]:
+    supply, outer = bearing.inner.supply.channels, bearing.outer
+    if supply is None:
+        return "needs channels, and the inner film has no feed holes.", 'Write inner.supply.kind = "bores".'
+    if supply.on == "journal":
+        return "needs channels through the ring; the feed holes are in the journal.", 'Write inner.supply.on = "shell".'
+    if not outer.supply.feeds and not {"oil-bath"} & {bearing.inner.ends, outer.ends}:
+        return "leaves the bearing without a supply from outside.", f"Give it {INLETS}."
+    if outer.supply.splits:
+        if supply.axial_position == MIDDLE:
+            return "", ""
+        problem = "asks for feed holes next to a central groove, which makes two different outer films."
+        return problem, "Put the feed holes in the middle, or the groove at an end of the outer film."
+    if bearing.ring.spin == "free" and not outer.supply.plain:
+        problem = f"asks for {outer.supply.kind} in the housing, which the feed holes of a turning ring pass."
+        return problem, f"Give it {INLETS}, or a ring that does not turn."
+    if bearing.ring.spin == "free" and outer.shell is not None:
+        problem = f"asks for {outer.shell.words} in the housing, which the feed holes of a turning ring pass."
+        return problem, f"Remove outer.{outer.shell.key}."
+    return "", ""
+
 
 ELEMENT = 2.0 * math.pi / 20.0  # L of (4.42) in rad: of the elements of figure 6.2
 

@@ -22,10 +22,9 @@ from frbcli.compiled import Indices, compiled
 from frbcli.solve.films.forces import move_film
 from frbcli.solve.films.steps import accept_films, begin_stage, most_iterations, write_oil
 from frbcli.solve.heat import NO_HEAT, AcceptedStep, begin_heat, carry_heat, warm_stage, write_heat
-from frbcli.solve.inputs import set_inputs, supply_warm
-from frbcli.solve.ring_spin import Rings, make_rings, pinned, set_speeds, spin_up
+from frbcli.solve.inputs import Rings, make_rings, pinned, set_inputs, set_speeds, spin_up, supply_warm
 from frbcli.solve.scratch import Scratch, make_scratch, rotation
-from frbcli.solve.stage.contact import prepare_cones, turn_cones
+from frbcli.solve.stage.contact import add_loads, prepare_cones, prepare_loads, solve_columns, turn_cones
 from frbcli.solve.stage.equations import (
     FORCE,
     LAG_SWEEPS,
@@ -45,7 +44,6 @@ from frbcli.solve.stage.equations import (
     start_stage,
 )
 from frbcli.solve.stage.journal_newton import forces
-from frbcli.solve.stage.loads import add_loads, prepare_loads, solve_columns
 from frbcli.solve.state import (
     CONTACT,
     HISTORY,
@@ -61,6 +59,7 @@ from frbcli.solve.state import (
     LoopOutput,
     RotorData,
     State,
+    Tableau,
 )
 from frbcli.solve.step import (
     SMALLEST_STEP,
@@ -77,7 +76,6 @@ from frbcli.solve.step import (
     step_after,
     write_outputs,
 )
-from frbcli.solve.tableau import Tableau
 from frbcli.solve.time_loop import films_work
 
 # Behind the numbers of a state: steps of the films, how many of them were repeated, the next one in s, and whether the

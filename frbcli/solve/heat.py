@@ -15,9 +15,8 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.compiled import by_types, compiled, type_of
-from frbcli.solve.films.forces import drag_integral
-from frbcli.solve.films.kinds import CELLS, kind_of
-from frbcli.solve.films.warm import keep_oil, leaving, oil_share, set_scale
+from frbcli.solve.films.forces import drag_integral, keep_oil, leaving, oil_share, set_scale
+from frbcli.solve.films.steps import CELLS, kind_of
 from frbcli.solve.stage.contact import feel, rubbing
 from frbcli.solve.stage.equations import FORCE, OMEGA, X_0, U
 from frbcli.solve.state import OVERHEATED, RUNNING, SLIP, RotorData

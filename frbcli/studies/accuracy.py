@@ -20,21 +20,19 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case_text
 from frbcli.case.schema import Case
-from frbcli.compilation import working_time
+from frbcli.compiled import working_time
 from frbcli.errors import Fault, InputError, NotConverged, did_you_mean, input_error
 from frbcli.linear.stability import stability
 from frbcli.results.store import Run
-from frbcli.runs.errors.error_budget import quiet_until
+from frbcli.runs.error_budget import quiet_until
 from frbcli.runs.march import Progress
 from frbcli.runs.run import rundown, runup
-from frbcli.scene.coupling import COUPLINGS, chosen_coupling, coupling_named
-from frbcli.scene.gate.gate import require
+from frbcli.scene.course import COUPLINGS, chosen_coupling, coupling_named, default_speeds
 from frbcli.scene.gate.rule import LADDER
+from frbcli.scene.gate.static import require
 from frbcli.scene.machine.system import make_system
-from frbcli.scene.planning.film_choice import DEFAULT_MESH
+from frbcli.scene.planning.film_choice import DEFAULT_MESH, Plan
 from frbcli.scene.planning.plan import THEORIES, make_plan
-from frbcli.scene.planning.planned import Plan
-from frbcli.scene.speeds import default_speeds
 from frbcli.studies.ladder import AccuracyLadder, Rung, RungError, RungResult
 
 INTERRUPTED = "interrupted"

@@ -20,18 +20,17 @@ from frbcli.case.schema import Case
 from frbcli.columns import ZERO_CELSIUS, Column, Shown, Table, Tabular, table_of, uncertain_speed
 from frbcli.errors import Fault, InputError, NotConverged, did_you_mean, input_error
 from frbcli.film.cavitation.table import law_named, laws, names
-from frbcli.results.columns import uncertain_pair
+from frbcli.results.records import uncertain_pair
 from frbcli.results.store import Run, check_output
+from frbcli.runs.header import POWER
 from frbcli.runs.march import Progress
-from frbcli.runs.record.header import POWER
 from frbcli.runs.run import PROFILES, earlier_run, is_interrupted, standing_run
-from frbcli.scene.coupling import COUPLINGS, chosen_coupling
-from frbcli.scene.gate.gate import require
+from frbcli.scene.course import COUPLINGS, chosen_coupling
 from frbcli.scene.gate.rule import COMPARISON
-from frbcli.scene.planning.error_runs import cost_of_run
+from frbcli.scene.gate.static import require
 from frbcli.scene.planning.kinematic_plan import TESTS as KINEMATIC_TESTS
-from frbcli.scene.planning.plan import THEORIES, make_plan
-from frbcli.studies.side_by_side import COMMANDS, Ended, Report, RunTask, in_turn, side_by_side
+from frbcli.scene.planning.plan import THEORIES, cost_of_run, make_plan
+from frbcli.studies.against import COMMANDS, Ended, Report, RunTask, in_turn, side_by_side
 
 MODELS, COUPLING_TABLE = "models", "couplings"  # tables of the terminal
 MS_PER_HOUR = 3.6e6  # of a run that takes its own time

@@ -18,19 +18,19 @@ from typing import Any
 
 import numpy as np
 
-from frbcli.analysis.ridges import Ridges, ridge_speeds, ridges
+from frbcli.analysis.resonance import Ridges, ridge_speeds, ridges
 from frbcli.analysis.signals import bearing_clearance
 from frbcli.analysis.spectrum import window_length
 from frbcli.arrays import Array, Truths
-from frbcli.case.reading.listing import machine_fault
-from frbcli.case.reading.listing import values as listed
+from frbcli.case.reading.shipped import machine_fault
+from frbcli.case.reading.shipped import values as listed
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, Table, Tabular, table_of
 from frbcli.errors import Fault, FrbError, InputError, did_you_mean, input_error
 from frbcli.results.records import SPEED, TIME
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
-from frbcli.scene.gate.gate import require
+from frbcli.scene.gate.static import require
 
 SPAN = 3.0  # factor by which a number may move either way, if no bounds are given
 STEP = 0.01  # relative change of a number for its derivatives: above what steps and onsets scatter by

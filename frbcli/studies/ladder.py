@@ -103,7 +103,7 @@ class AccuracyLadder(Tabular):
 
     def table(self) -> Table:
         """One row per rung."""
-        return table_of(LADDER, ((item, item in self.front) for item in self.ladder))
+        return table_of(LADDER_COLUMNS, ((item, item in self.front) for item in self.ladder))
 
 
 def _film(item: Any) -> str:
@@ -154,7 +154,7 @@ RESULT = (
 )  # fmt: skip
 
 # Of a RungResult and whether it is on Pareto's front
-LADDER = (
+LADDER_COLUMNS = (
     Column("mark", "", "", lambda item: ("*" if item[0].planned else "") + ("+" if item[1] else ""),
            shown=(Shown(""),), key="", flat=False),
     *named(RESULT, "", itemgetter(0)),

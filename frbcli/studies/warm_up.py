@@ -19,21 +19,20 @@ from frbcli.case.reading.load import load_case
 from frbcli.case.reading.shipped import shipped_names
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, Table, Tabular, table_of
-from frbcli.compilation import counted
+from frbcli.compiled import counted
 from frbcli.errors import NotConverged
 from frbcli.linear.sheets.bearing import bearing_sheet
 from frbcli.linear.stability import stability_points
 from frbcli.runs.inputs import films_change, machine_inputs
 from frbcli.runs.record.interrupt import deaf
 from frbcli.runs.run import runup
-from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import BEARING, KINEMATIC, ROTATION, RUN, STABILITY
+from frbcli.scene.gate.static import faults
 from frbcli.scene.machine.rotor import element_parts
-from frbcli.scene.planning.film_choice import form_of
+from frbcli.scene.machine.turbocharger import shaft_of
+from frbcli.scene.planning.film_choice import Decision, form_of
 from frbcli.scene.planning.kinematic_plan import kinematic_plan
 from frbcli.scene.planning.plan import make_plan
-from frbcli.scene.planning.planned import Decision
-from frbcli.scene.shafts.table import shaft_of
 
 MOMENT_s = 1e-3  # of a run
 PERIODS = 1e-3  # of a squeeze or a whirl

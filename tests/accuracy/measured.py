@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from frbcli.case.reading.load import load_case
-from frbcli.plot.accuracy import accuracy_figure
 from frbcli.plot.style import save_figure
+from frbcli.plot.sweep import accuracy_figure
 from frbcli.runs.run import runup
 from frbcli.scene.cost import expected_cost
-from frbcli.scene.planning.eccentricity import run_up_profile
+from frbcli.scene.planning.cell_choice import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.studies.accuracy import accuracy
 from frbcli.studies.ladder import RungResult

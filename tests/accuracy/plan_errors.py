@@ -20,11 +20,10 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # threads of so small matric
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
-from frbcli.runs.errors.trial import tried_error
 from frbcli.runs.run import runup
-from frbcli.scene.planning.eccentricity import run_up_profile
-from frbcli.scene.planning.error_runs import end_of_trial, planned_trial
-from frbcli.scene.planning.plan import expected_error, make_plan
+from frbcli.runs.second_run import tried_error
+from frbcli.scene.planning.cell_choice import run_up_profile
+from frbcli.scene.planning.plan import end_of_trial, expected_error, make_plan, planned_trial
 from frbcli.studies.accuracy import difference
 
 TARGETS = (1e-2, 3e-3, 1e-3)

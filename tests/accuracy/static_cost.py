@@ -18,7 +18,7 @@ from unittest.mock import patch
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
-from frbcli.linear import stability, threshold
+from frbcli.linear import stability, stability_point
 from frbcli.linear.damped_modes import damped_modes
 from frbcli.linear.response import response
 from frbcli.linear.sheets import film_state
@@ -54,15 +54,17 @@ def without_errors() -> Iterator[None]:
     ) -> MachineAtRest:
         return whole(self, omega, near, with_error=False)
 
-    def at_threshold(machines: StaticMachines, speed: float, near: MachineAtRest | None = None) -> threshold.Threshold:
+    def at_threshold(
+        machines: StaticMachines, speed: float, near: MachineAtRest | None = None
+    ) -> stability_point.Threshold:
         found = point_at_rest(whole(machines, 2.0 * math.pi * speed, near, with_error=False), speed)
-        return threshold.Threshold(speed, found.critical.imag / (2.0 * math.pi))
+        return stability_point.Threshold(speed, found.critical.imag / (2.0 * math.pi))
 
     unknown = film_state.Fields(*(math.nan,) * 4)
     with contextlib.ExitStack() as patches:
         for place, name, instead in (
             (StaticMachines, "at", at),
-            (threshold, "threshold_at", at_threshold),
+            (stability_point, "threshold_at", at_threshold),
             (stability, "with_errors", lambda point, _: point),
             (film_state, "force_error", lambda *_: math.nan),
             (film_state, "_field_errors", lambda *_: unknown),

@@ -13,16 +13,16 @@ from scipy.special import expit
 from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
 
 from frbcli.analysis import signals as signals_of_a_run
+from frbcli.analysis import subsynchronous
 from frbcli.analysis.events import WHIRL_BEGINS, Event, Kind, find_events
-from frbcli.analysis.orders import subsynchronous
-from frbcli.analysis.orders.order_tracking import order_track
+from frbcli.analysis.order_tracking import order_track
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.linear import critical_speeds
 from frbcli.linear.critical_speeds import linear_critical_speeds
 from frbcli.plot.run.summary import _words
-from frbcli.results.columns import event_name
+from frbcli.results.records import event_name
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
 from frbcli.scene.cost import CRITICAL_s, before_s

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from frbcli.analysis.measured import Measurement, measured_run
-from frbcli.analysis.orders.tacho import tacho_speed
+from frbcli.analysis.order_tracking import tacho_speed
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
 from frbcli.results.measured.reading import read_columns

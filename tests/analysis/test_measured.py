@@ -13,8 +13,7 @@ import pytest
 from synthetic_run import CLEARANCE, Rotor, parser_error, signals
 
 from frbcli.analysis.measured import Measurement, measured_run
-from frbcli.analysis.orders.order_tracking import order_track
-from frbcli.analysis.orders.tacho import MARK
+from frbcli.analysis.order_tracking import MARK, order_track
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError

@@ -11,7 +11,7 @@ from synthetic_run import as_run
 
 from frbcli.analysis import signals
 from frbcli.analysis.events import find_events
-from frbcli.analysis.orders.order_tracking import order_track, order_tracks
+from frbcli.analysis.order_tracking import order_track, order_tracks
 from frbcli.analysis.signals import SignalOf
 from frbcli.analysis.spectrum import waterfall
 from frbcli.errors import InputError

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.signal import find_peaks, peak_widths
 
-from frbcli.analysis.peaks import local_maxima, prominent_peaks
+from frbcli.analysis.spectrum import local_maxima, prominent_peaks
 
 
 def curve(seed: int) -> np.ndarray:

@@ -10,7 +10,7 @@ from ring_whirls import ROOM, RingWhirl, ring_run
 from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
 
 from frbcli.analysis.events import Event, find_events
-from frbcli.analysis.orders.subsynchronous import whirl_names, whirls
+from frbcli.analysis.subsynchronous import whirl_names, whirls
 from frbcli.analysis.uncertainty import BETWEEN
 
 

@@ -139,7 +139,7 @@ def test_spectra_are_those_of_scipy_to_round_off(direction: Direction, window_s:
 
 def test_spectra_do_without_scipy() -> None:
     code = "import sys, frbcli.analysis.spectrum, frbcli.analysis.events;" \
-           " import frbcli.analysis.orders.order_tracking;" \
+           " import frbcli.analysis.order_tracking;" \
            "assert not {'scipy.special', 'scipy.linalg', 'scipy.signal'} & set(sys.modules)"  # fmt: skip
     subprocess.run([sys.executable, "-c", code], check=True)
 

@@ -14,7 +14,7 @@ import pandas as pd
 import pytest
 
 import frbcli
-from frbcli.balancing.balance import Balancing
+from frbcli.balancing import Balancing
 from frbcli.case.reading.load import case_from_dict
 from frbcli.cli.main import run as frb
 from frbcli.results.store import Run

@@ -15,8 +15,8 @@ import frbcli
 from frbcli.case.bearing import SingleFilmBearing
 from frbcli.case.model import Model
 from frbcli.case.reading.load import case_from_dict, describes, load_case, load_case_text
+from frbcli.case.reading.settings import as_tables, parse
 from frbcli.case.reading.shipped import shipped_names
-from frbcli.case.reading.text import as_tables, parse
 from frbcli.case.rotor import RigidRotor
 from frbcli.case.schema import Case
 from frbcli.case.supplies import CircumferentialGroove

@@ -11,13 +11,13 @@ import pytest
 
 import frbcli
 from frbcli.analysis.measured import Measurement, measured_run
-from frbcli.analysis.orders.order_tracking import order_track
-from frbcli.case.reading.listing import values
+from frbcli.analysis.order_tracking import order_track
 from frbcli.case.reading.load import case_from_dict, load_case_text
+from frbcli.case.reading.shipped import values
 from frbcli.errors import InputError
 from frbcli.runs.run import rundown, runup
-from frbcli.scene.planning.eccentricity import run_up_profile
-from frbcli.scene.speeds import default_speeds
+from frbcli.scene.course import default_speeds
+from frbcli.scene.planning.cell_choice import run_up_profile
 from frbcli.studies.accuracy import accuracy
 from frbcli.studies.warm_up import moment_of_run
 

@@ -9,8 +9,7 @@ from rigid_cycles import UNIT_Hz, diagram, rigid
 
 import frbcli
 from frbcli.cli.main import run
-from frbcli.cycles.explain import explanations, threshold_kind
-from frbcli.cycles.limit_cycles import limit_cycles_over
+from frbcli.cycles.limit_cycles import explanations, limit_cycles_over, threshold_kind
 from frbcli.plot.curves import run_tracks
 
 SHORT = ("--set", "film.theory=short")

@@ -18,14 +18,11 @@ import frbcli
 from frbcli.case.schema import Case
 from frbcli.columns import table_of
 from frbcli.cycles.branch import first_place, follow_branch
-from frbcli.cycles.columns import special_columns
+from frbcli.cycles.columns import CyclePoint, LimitCycles, special_columns
 from frbcli.cycles.diagram import Walk, diagram, point_of
 from frbcli.cycles.limit_cycles import Family, resting_over
-from frbcli.cycles.method.courses import MachineCourse
-from frbcli.cycles.method.equilibria import resting_curve
-from frbcli.cycles.method.follower import FoldFollower, Follower
-from frbcli.cycles.method.mesh_error import OtherMesh, hopf_error
-from frbcli.cycles.result import CyclePoint, LimitCycles
+from frbcli.cycles.method.equilibria import MachineCourse, resting_curve
+from frbcli.cycles.method.follower import FoldFollower, Follower, OtherMesh, hopf_error
 from frbcli.plot.machine.limit_cycles import limit_cycles_figure
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan

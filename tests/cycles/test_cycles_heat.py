@@ -17,10 +17,10 @@ from frbcli.cycles.method.continuation import Place
 from frbcli.cycles.method.equilibria import at_rest
 from frbcli.cycles.method.follower import Follower
 from frbcli.cycles.unbalance import Synchronous, driven_equations
-from frbcli.equilibrium.warm_machine import WarmMachines
+from frbcli.equilibrium.static_machine import WarmMachines
 from frbcli.errors import InputError
 from frbcli.film.cells.balance.side_flow import outflow
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.film import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.mean_outflow import mean_end_flows
 from frbcli.runs.run import runup

@@ -7,8 +7,8 @@ import pytest
 
 from frbcli.case.reading.load import load_case_text
 from frbcli.case.schema import Case
+from frbcli.cycles.columns import CyclePoint, LimitCycles
 from frbcli.cycles.limit_cycles import limit_cycles
-from frbcli.cycles.result import CyclePoint, LimitCycles
 from frbcli.errors import InputError
 
 MACHINE = """

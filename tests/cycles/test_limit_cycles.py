@@ -20,24 +20,22 @@ from scipy.optimize import fsolve
 
 import frbcli
 from frbcli.case.reading.load import load_case_text
-from frbcli.cycles.method.balance import Balance, packed
+from frbcli.cycles.method.balance import Balance, packed, state_space
 from frbcli.cycles.method.equilibria import resting_curve
 from frbcli.cycles.method.machine import film_loads, smooth_films, transfer
-from frbcli.cycles.method.states import state_space
 from frbcli.equilibrium.resting import resting_position
-from frbcli.film.cells.motion import turned
-from frbcli.film.cells.steady_force import steady_force
+from frbcli.film.cells.film import turned
+from frbcli.film.cells.linearised import steady_force
 from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.linear.stability import stability
 from frbcli.rotor.loads import speed_profile
 from frbcli.runs.start import control_of, rotor_data, state_at
-from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import SPEED_CYCLES
+from frbcli.scene.gate.static import faults
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
-from frbcli.solve.state import RUNNING, make_output
-from frbcli.solve.tableau import METHODS
+from frbcli.solve.state import METHODS, RUNNING, make_output
 from frbcli.solve.time_loop import advance
 
 

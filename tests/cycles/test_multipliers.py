@@ -9,10 +9,8 @@ import pytest
 from cycle_machines import machine_of
 from rigid_cycles import diagram, rigid
 
-from frbcli.cycles.method.balance import packed
+from frbcli.cycles.method.balance import multipliers, packed, state_space
 from frbcli.cycles.method.equilibria import resting_curve
-from frbcli.cycles.method.floquet import multipliers
-from frbcli.cycles.method.states import state_space
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 

@@ -15,8 +15,7 @@ from scipy.interpolate import CubicSpline
 import frbcli
 from frbcli.case.reading.load import load_case_text
 from frbcli.cli.main import run
-from frbcli.cycles.method.courses import MachineCourse
-from frbcli.cycles.method.equilibria import resting_curve
+from frbcli.cycles.method.equilibria import MachineCourse, resting_curve
 from frbcli.cycles.method.follower import Cycle
 from frbcli.cycles.stability_map import Across, StabilityMap
 from frbcli.cycles.unbalance import Synchronous, synchronous_response

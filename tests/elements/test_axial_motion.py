@@ -11,13 +11,12 @@ import pytest
 
 import frbcli
 from frbcli.case.schema import Case
-from frbcli.elements.collar import collar_of
-from frbcli.elements.collar_motion import AxialMotion, axial_motion
+from frbcli.elements.collar import AxialMotion, axial_motion, collar_of
 from frbcli.errors import InputError
 from frbcli.plot.run.quantities import quantity_figure
 from frbcli.rotor.loads import speed_profile
 from frbcli.scene.machine.rotor import collar_tilt, make_rotor
-from frbcli.scene.planning.eccentricity import run_up_profile
+from frbcli.scene.planning.cell_choice import run_up_profile
 
 LENGTH, TOP, MASS = 0.08, 500.0, 0.03157
 STILL = '{ from = "500 Hz", to = "500 Hz", duration = "0.04 s" }'

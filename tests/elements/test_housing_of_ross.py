@@ -20,8 +20,8 @@ from series_rotors import HEAVY
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict, load_case_text
-from frbcli.case.reading.text import to_toml
-from frbcli.case.surroundings.supports import shape
+from frbcli.case.reading.settings import to_toml
+from frbcli.case.surroundings import shape
 from frbcli.errors import InputError
 from frbcli.linear.response import response
 from frbcli.linear.stability_point import eigenvalues

@@ -19,7 +19,7 @@ from series_rotors import HEAVY, assert_eigenvalues, in_series
 import frbcli
 from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
 from frbcli.cycles.limit_cycles import limit_cycles
-from frbcli.equilibrium.coefficients import coefficients_of
+from frbcli.equilibrium.linearised import coefficients_of
 from frbcli.errors import InputError
 from frbcli.linear.critical_map import critical_map
 from frbcli.linear.modes import natural_modes

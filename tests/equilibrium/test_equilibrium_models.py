@@ -18,7 +18,7 @@ from frbcli.bearing_tests import steady_film as resting
 from frbcli.bearing_tests.steady_film import film_force, resting_displacement
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.film import Motion
 from frbcli.scene.planning.kinematic_plan import kinematic_plan
 
 CASES = {("40", "10"): "jeffcott-table-4-1", ("35", "12"): "jeffcott"}

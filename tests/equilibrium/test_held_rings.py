@@ -20,16 +20,15 @@ import frbcli
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.equilibrium import static_films
-from frbcli.equilibrium.coefficients import films_at_rest
-from frbcli.equilibrium.linearised import first_order, linearised, rotor_at_rest
+from frbcli.equilibrium.linearised import films_at_rest, first_order, linearised, rotor_at_rest
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import InputError
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.roughness.contact import ElasticShell
 from frbcli.plot.machine.bearing import bearing_figure
 from frbcli.rotor.loads import speed_profile
-from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import BEARING, SPEED_CYCLES, STABILITY
+from frbcli.scene.gate.static import faults
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.stage.contact import feel, push_back

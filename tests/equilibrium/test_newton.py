@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from frbcli.equilibrium.newton import GAP_KEPT, ForceBalance, Search, search_rest
+from frbcli.equilibrium.resting import GAP_KEPT, ForceBalance, Search, search_rest
 
 CLEARANCES = np.array([[3e-5]])
 STIFFNESS = 2e6  # N/m

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 import frbcli
 from frbcli.equilibrium import static_films
-from frbcli.equilibrium.newton import ForceBalance
-from frbcli.equilibrium.resting import RestEquations
+from frbcli.equilibrium.resting import ForceBalance, RestEquations
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.rotor.assembly import sprung
 from frbcli.scene.machine.system import System

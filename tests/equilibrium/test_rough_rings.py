@@ -11,11 +11,10 @@ from films import ROUGH
 from marches import march, start
 
 import frbcli
+from frbcli.cycles.method.balance import state_space
 from frbcli.cycles.method.equilibria import at_rest
 from frbcli.cycles.method.machine import film_loads, make_machine
-from frbcli.cycles.method.states import state_space
-from frbcli.equilibrium.coefficients import FilmsAtRest, films_at_rest
-from frbcli.equilibrium.linearised import linearised, rotor_at_rest, states
+from frbcli.equilibrium.linearised import FilmsAtRest, films_at_rest, linearised, rotor_at_rest, states
 from frbcli.equilibrium.resting import RestingPosition, resting_position
 from frbcli.film.roughness.asperities import make_asperities, rub
 from frbcli.film.roughness.contact import BY_V_X, BY_X, VALUE, Rubbing

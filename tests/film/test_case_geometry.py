@@ -10,8 +10,7 @@ import pytest
 from frbcli import load_case
 from frbcli.cli.main import run
 from frbcli.errors import InputError
-from frbcli.film.gap import LobedShell
-from frbcli.film.operating import reynolds_number, ring_rotation_strains, shaft_rotation_strain
+from frbcli.film.gap import LobedShell, reynolds_number, ring_rotation_strains, shaft_rotation_strain
 from frbcli.materials import BRASS, STEEL
 from frbcli.scene.machine.findings import operating_points
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, kinematic_plan

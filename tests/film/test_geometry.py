@@ -12,10 +12,9 @@ from volume_films import ROTATION, polar_motion, section_of
 from frbcli.bearing_tests.history import march
 from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cells.film import VolumeFilm, supplied, supply_share
+from frbcli.film.cells.film import Motion, VolumeFilm, path_seen_from, seen_from, supplied, supply_share, turned
 from frbcli.film.cells.loads import FilmLoads, loads
 from frbcli.film.cells.mesh.grid import fitted_grid, volume_grid
-from frbcli.film.cells.motion import Motion, path_seen_from, seen_from, turned
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import AxialGroove, Hole, LobedShell, Section, TabledShell, gap_height, graded_ring, smallest_gap
 

@@ -23,7 +23,7 @@ from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.runs.march import March
 from frbcli.scene.machine.system import Segment, System, make_system
-from frbcli.scene.planning.eccentricity import run_up_profile
+from frbcli.scene.planning.cell_choice import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.films.cells import EMPTY, OPEN, cell_response, move_even
 from frbcli.solve.films.steps import make_work

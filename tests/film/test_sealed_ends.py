@@ -14,18 +14,17 @@ from frbcli.case.reading.load import load_case
 from frbcli.errors import InputError
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.cells.balance.side_flow import outflow
-from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.film import Motion, VolumeFilm
 from frbcli.film.cells.loads import FilmLoads
 from frbcli.film.cells.mesh.grid import force_weights, run_grid
-from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import AxialGroove, Section
 from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.end_flow import end_flow, make_end_flow
 from frbcli.film.rectangles.film import direct_force, evaluate, make_film
 from frbcli.scene.films import make_law
-from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import RUN
+from frbcli.scene.gate.static import faults
 
 MESH, FINE = Mesh(6, 96), Mesh(12, 192)
 WIDE = replace(PLAIN, width=30e-3, bearing_width=30e-3)

@@ -2,7 +2,7 @@
 
 from math import radians
 
-from frbcli.elements.rolling.bearing import BallBearing
+from frbcli.elements.ball import BallBearing
 from frbcli.materials import ROLLING
 
 STEEL, NITRIDE = ROLLING["steel"], ROLLING["silicon nitride"]

@@ -10,7 +10,7 @@ import numpy as np
 
 from frbcli.film.gap import AxialGroove, Section, whole_width
 from frbcli.film.grid import Mesh
-from frbcli.film.kinds.tables import TableFilms
+from frbcli.film.kinds.contract import TableFilms
 from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.rotor.assembly import LinearRotor

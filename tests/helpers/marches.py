@@ -19,13 +19,11 @@ from frbcli.film.grid import Mesh
 from frbcli.film.kinds.cells import CellFilms
 from frbcli.film.kinds.tilted import TiltedFilms
 from frbcli.film.rectangles.film import evaluate, make_film
-from frbcli.rotor.assembly import LinearRotor, Link, assembled
-from frbcli.rotor.body import Body, jeffcott_rotor, point_mass
+from frbcli.rotor.assembly import Body, LinearRotor, Link, assembled, jeffcott_rotor, point_mass
 from frbcli.rotor.loads import SpeedProfile, speed_profile
 from frbcli.runs.start import rotor_data, state_at
 from frbcli.scene.machine.system import System
-from frbcli.solve.state import OUTPUTS, RUNNING, Control, State, make_output
-from frbcli.solve.tableau import METHODS
+from frbcli.solve.state import METHODS, OUTPUTS, RUNNING, Control, State, make_output
 from frbcli.solve.time_loop import advance
 
 MESH = Mesh(6, 96)

@@ -6,7 +6,7 @@ import math
 from functools import cache
 
 import frbcli
-from frbcli.cycles.result import LimitCycles
+from frbcli.cycles.columns import LimitCycles
 
 GRAVITY, CLEARANCE, MASS, WIDTH, RADIUS = 9.81, 50e-6, 6.0, 10e-3, 25e-3
 UNIT_Hz = math.sqrt(GRAVITY / CLEARANCE) / (2.0 * math.pi)  # w = 1

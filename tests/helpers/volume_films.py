@@ -12,7 +12,7 @@ from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.penalty import PREFACTOR, Penalty, steepness_exponent
 from frbcli.film.cavitation.two_phase import Peeken, TwoPhase
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.film import Motion
 from frbcli.film.gap import AxialGroove, Section
 
 Row = dict[str, str]

@@ -26,8 +26,7 @@ from frbcli.case.reading.load import load_case
 from frbcli.cli import progress
 from frbcli.cli.common import Terminal
 from frbcli.cli.progress import Display, compilation_shown
-from frbcli.compilation import counted
-from frbcli.compiled import compiled
+from frbcli.compiled import compiled, counted
 from frbcli.runs.run import runup
 from frbcli.scene.cost import compile_s
 from frbcli.solve import time_loop

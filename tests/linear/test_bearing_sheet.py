@@ -17,7 +17,7 @@ from printed_sheets import CASE, OMEGA, Row, grooves, printed
 
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.cli.main import run as frb
-from frbcli.equilibrium.warm_machine import warm_machine
+from frbcli.equilibrium.static_machine import warm_machine
 from frbcli.errors import InputError
 from frbcli.linear.sheets.bearing import BearingSheet, bearing_sheet, sommerfeld_chart
 from frbcli.linear.sheets.film_state import FilmState

@@ -20,7 +20,7 @@ from frbcli.film.cells.solver import FilmSolver
 from frbcli.linear.sheets.bearing import sommerfeld_chart
 from frbcli.linear.sheets.film_state import FilmState
 from frbcli.linear.stability import stability_points
-from frbcli.linear.threshold import find_threshold
+from frbcli.linear.stability_point import find_threshold
 
 CELLS, COARSER = (48, 6), ((24, 4), (32, 4))  # of the sheets here: rotation has the first of them
 ECCENTRICITY = 0.5

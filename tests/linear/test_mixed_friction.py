@@ -13,14 +13,13 @@ from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.equilibrium.dynamic_films import dynamic_film
 from frbcli.equilibrium.resting import resting_position
-from frbcli.equilibrium.static_machine import StaticMachines
-from frbcli.equilibrium.warm_machine import warm_machine
+from frbcli.equilibrium.static_machine import StaticMachines, warm_machine
 from frbcli.errors import InputError
 from frbcli.film.roughness.plain import plain_touch
 from frbcli.linear.sheets.bearing import bearing_sheet
 from frbcli.linear.sheets.film_state import FilmState, MixedFriction
-from frbcli.scene.gate.gate import faults, require
 from frbcli.scene.gate.rule import BEARING, SPEED_CYCLES, STABILITY
+from frbcli.scene.gate.static import faults, require
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 

@@ -15,7 +15,7 @@ from frbcli.linear.damped_modes import damped_modes
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability, stability_points
 from frbcli.linear.stability_point import point_at_rest
-from frbcli.scene import speeds
+from frbcli.scene import course
 
 HOPF_Hz = (75.70, 75.95)  # of rigid-two-phase at 2 bar by shooting on the time loop, 24 to 64 cells around, 6 along
 FULL = ("bearing.supply.pressure=30 bar", "bearing.ends=oil-bath", "rotor.unbalance=1 g*mm")  # no cavity anywhere
@@ -35,7 +35,7 @@ def fed(*settings: str) -> Case:
 
 def test_the_threshold_is_the_hopf_point_of_shooting(monkeypatch: pytest.MonkeyPatch) -> None:
     """Within the stated error, which is of the cells: 1 % of the coefficients are 1 Hz of this threshold."""
-    monkeypatch.setattr(speeds, "SPEEDS_WITH_MEMORY", 2)
+    monkeypatch.setattr(course, "SPEEDS_WITH_MEMORY", 2)
     found = stability(fed("speed.from=74 Hz", "speed.to=81 Hz")).threshold
     assert found is not None
     assert all(abs(found.speed_Hz - hopf) < found.speed_uncertainty_Hz < 5.0 for hopf in HOPF_Hz)

@@ -16,7 +16,7 @@ from frbcli.linear.response import response
 from frbcli.linear.sheets.bearing import bearing_sheet, sommerfeld_chart
 from frbcli.linear.sheets.film_state import FilmState
 from frbcli.linear.stability import stability, stability_points
-from frbcli.linear.threshold import threshold_at
+from frbcli.linear.stability_point import threshold_at
 
 SPEEDS = [40.0, 90.0]
 CASE = load_case("rigid-axial-groove", ["rotor.unbalance=3 g*mm"])

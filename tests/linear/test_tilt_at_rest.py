@@ -23,10 +23,10 @@ from frbcli.linear.columns import FILM, film_columns, point_columns
 from frbcli.linear.sheets.film_state import FilmState
 from frbcli.linear.stability import stability_points
 from frbcli.linear.stability_point import StabilityPoint
-from frbcli.rotor.body import COORDINATES
+from frbcli.rotor.assembly import COORDINATES
 from frbcli.scene.forms.tilted import TiltedForm
-from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import RUN, STILL
+from frbcli.scene.gate.static import faults
 from frbcli.scene.machine.heat import warm_case
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.system import make_system

@@ -14,7 +14,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from frbcli.results.files.container import MAGIC, USER_BLOCK, seal
+from frbcli.results.container import MAGIC, USER_BLOCK, seal
 
 Change = Callable[[h5py.File, random.Random], None]
 

@@ -25,10 +25,10 @@ from frbcli.case.reading.shipped import find_shipped, shipped_names
 from frbcli.case.schema import json_schema
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError, RunFileError
-from frbcli.results.files.container import seal
+from frbcli.results.container import seal
 from frbcli.results.store import Header, Run, RunWriter, read_run
+from frbcli.scene.planning.film_choice import Plan
 from frbcli.scene.planning.plan import make_plan
-from frbcli.scene.planning.planned import Plan
 
 MUTATIONS = int(os.environ.get("FRB_MUTATIONS", "400"))
 CASES = [find_shipped(name) for name in shipped_names()]

@@ -27,8 +27,8 @@ from output_options import CALLS, CASE, RUN, SHORT, TABLE, Option, output_option
 from frbcli.case.reading.load import load_case
 from frbcli.case.reading.shipped import find_shipped
 from frbcli.cli.main import run as frb
-from frbcli.results.files.write import MARK, PAGE, PICTURES, TABLES
-from frbcli.results.files.write import RUN as RUN_KIND
+from frbcli.results.write import MARK, PAGE, PICTURES, TABLES
+from frbcli.results.write import RUN as RUN_KIND
 from frbcli.runs.run import runup
 
 TRIALS = int(os.environ.get("FRB_TRIALS", "5000"))

@@ -8,9 +8,9 @@ from typing import Any
 
 from paths import DOCS
 
+from frbcli.case.over_time import OVER_TIME
 from frbcli.case.schema import json_schema
 from frbcli.case.supplies import SUPPLIES, kind_of
-from frbcli.case.surroundings.over_time import OVER_TIME
 from frbcli.film.cavitation.table import SHIPPED
 
 PAGE = DOCS / "case-file.md"

@@ -14,9 +14,9 @@ from types import MappingProxyType
 
 from paths import DOCS
 
-from frbcli.balancing.balance import PLANES, POINTS
+from frbcli.balancing import PLANES, POINTS
 from frbcli.bearing_tests.columns import GAS, MOMENT, MOMENT_HISTORY, RESULT, STRIBECK, moment_columns
-from frbcli.cli.casefiles.hard import HARD_CASE
+from frbcli.cli.cases import HARD_CASE
 from frbcli.columns import Column, Columns
 from frbcli.cycles.columns import (
     MISSING,
@@ -29,7 +29,7 @@ from frbcli.cycles.columns import (
     special_columns,
     whirl_columns,
 )
-from frbcli.equilibrium.columns import HEAT_BALANCE, WARM_FILMS, WARM_RINGS
+from frbcli.equilibrium.linearised import HEAT_BALANCE, WARM_FILMS, WARM_RINGS
 from frbcli.linear.balance_quality import COLUMNS as BALANCE_QUALITY
 from frbcli.linear.columns import (
     AXIAL,
@@ -51,13 +51,13 @@ from frbcli.linear.columns import (
     TILTING,
 )
 from frbcli.linear.critical_map import CRITICAL_SPEEDS
-from frbcli.linear.vibration import API_POINTS, ISO_POINTS, MARGINS
-from frbcli.results.columns import EVENTS, MACHINE_SIGNALS, PART_SIGNALS
+from frbcli.linear.damped_modes import API_POINTS, ISO_POINTS, MARGINS
+from frbcli.results.records import EVENTS, MACHINE_SIGNALS, PART_SIGNALS
 from frbcli.scene.machine.findings import FILM_LOADS, FILM_OPERATION, FILM_TILTS
 from frbcli.studies.against import DEVIATIONS, RIDGES
 from frbcli.studies.compare import HEAT, VARIANT
 from frbcli.studies.fit import FITTED
-from frbcli.studies.ladder import LADDER
+from frbcli.studies.ladder import LADDER_COLUMNS
 from frbcli.studies.sweep.sweep import point_columns
 
 
@@ -93,7 +93,7 @@ TABLES: dict[str, Columns] = {
     "stribeck curve": STRIBECK,
     "moments": moment_columns(False),
     "moment over time": MOMENT_HISTORY,
-    "accuracy": LADDER,
+    "accuracy": LADDER_COLUMNS,
     "comparison": VARIANT,
     "comparison with heat": of_json(HEAT),
     "natural modes": NATURAL_MODES,

@@ -13,10 +13,10 @@ import numpy as np
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict
-from frbcli.case.reading.text import to_toml
+from frbcli.case.reading.settings import to_toml
 from frbcli.linear.stability import stability
 from frbcli.rotor.beam import BeamSection
-from frbcli.scene.shafts.table import shaft_of
+from frbcli.scene.machine.turbocharger import shaft_of
 from pages.textbook_rows import CLOSED, PRINTED, PROGRAM, Bench, Row
 
 TURN = 2.0 * math.pi

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from synthetic_run import make_run
 
-from frbcli.analysis.orders.subsynchronous import with_whirl_names
+from frbcli.analysis.subsynchronous import with_whirl_names
 from frbcli.case.reading.load import load_case
 from frbcli.columns import table_of
 from frbcli.linear.sheets.thrust import thrust_sheet
@@ -27,7 +27,7 @@ from frbcli.plot.style import (
     styled,
     with_subscripts,
 )
-from frbcli.results.columns import EVENTS
+from frbcli.results.records import EVENTS
 
 
 def overlapping(texts: list[Text], figure: Figure) -> list[tuple[str, str]]:

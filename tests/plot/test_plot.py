@@ -17,21 +17,20 @@ from matplotlib.figure import Figure
 from paths import ROOT
 from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
 
-from frbcli.analysis.orders.order_tracking import order_tracks
+from frbcli.analysis.order_tracking import order_tracks
 from frbcli.case.reading.load import load_case
 from frbcli.errors import InputError, RunFileError
 from frbcli.plot.curves import orders_figure
 from frbcli.plot.picture import fit
 from frbcli.plot.run.motion import displacement_figure, eccentricity_figure, orbit_figure, visible_steps
 from frbcli.plot.run.quantities import quantity_figure
-from frbcli.plot.run.ring_speed import ring_speed_figure
-from frbcli.plot.run.summary import summary_figure
+from frbcli.plot.run.summary import ring_speed_figure, summary_figure
 from frbcli.plot.signals import DRAWN_POINTS, Envelope, at_times, clearance, curve, labels, model
 from frbcli.plot.style import new_figure, picture, save_figure, styled
 from frbcli.plot.waterfall import LEVELS_dB, run_spectra, waterfall_figure
-from frbcli.results.files.write import MARK
 from frbcli.results.records import pieces
 from frbcli.results.store import Run
+from frbcli.results.write import MARK
 
 FILM = '[film]\ntheory = "finite"\ncavitation = "{}"\n'
 

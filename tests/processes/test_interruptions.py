@@ -22,7 +22,7 @@ from paths import ROOT
 
 from frbcli.case.reading.load import load_case
 from frbcli.cli import process as cli_process
-from frbcli.results.files.lock import locked
+from frbcli.results.container import locked
 from frbcli.results.store import read_run
 from frbcli.runs.record.interrupt import deaf
 from frbcli.runs.run import runup

@@ -23,11 +23,10 @@ from frbcli.case.reading.shipped import shipped_cases
 from frbcli.cli.main import frb
 from frbcli.elements.table import ELEMENTS, symbols_at
 from frbcli.errors import InputError, RunFileError
-from frbcli.plot.run.speeds import between
+from frbcli.plot.run.summary import between
 from frbcli.plot.waterfall import LOWEST_dB, STEP_dB
 from frbcli.report.page import report
-from frbcli.report.sketch import film_sketches, rotor_sketch
-from frbcli.report.svg import SYMBOLS
+from frbcli.report.sketch import SYMBOLS, film_sketches, rotor_sketch
 from frbcli.results.records import Signal
 from frbcli.results.store import Run
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from frbcli.results.files.write import harmless_text, write_table
+from frbcli.results.write import harmless_text, write_table
 
 HARMFUL = ["=cmd|' /C calc'!A0", "@SUM(1)", "+1+cmd|x", "-2+3", " =1", "=1"]
 HARMLESS = ["1 g*mm", "-5 N", "+1.5e3 N*s/m", "-3.5 um", "--", "a=b", "", "-1", "[1, 2]"]

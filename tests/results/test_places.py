@@ -27,9 +27,9 @@ from frbcli.cli.main import COMMANDS
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
 from frbcli.plot.moving import animate_orbits
-from frbcli.results.files.lock import locked
-from frbcli.results.files.write import PAGE, TABLES, has_checksum, mark_table, write, written
+from frbcli.results.container import locked
 from frbcli.results.store import Header, Run, RunWriter, read_run
+from frbcli.results.write import PAGE, TABLES, has_checksum, mark_table, write, written
 from frbcli.runs.march import March
 from frbcli.runs.run import rundown, runup
 
@@ -283,7 +283,7 @@ def frb_compare(case: object) -> None:
     compare(case, ["half-sommerfeld", "sommerfeld"], keep="kept")  # type: ignore[arg-type]
 
 
-HOLDS = "import sys, time; from pathlib import Path; from frbcli.results.files.lock import locked\n" + (
+HOLDS = "import sys, time; from pathlib import Path; from frbcli.results.container import locked\n" + (
     "with locked(Path(sys.argv[1])):\n    print('held', flush=True); time.sleep(60.0)"
 )
 
@@ -481,7 +481,7 @@ def test_locks_of_a_file_system_without_them_stop_nobody(monkeypatch: pytest.Mon
     def unknown(_: int) -> None:
         raise OSError(95, "Operation not supported")
 
-    monkeypatch.setattr("frbcli.results.files.lock._lock", unknown)
+    monkeypatch.setattr("frbcli.results.container._lock", unknown)
     with locked(Path("there/a.h5")):
         write(Path("there/a.html"), PAGE, "<!doctype html>")
     assert os.listdir("there") == ["a.html"]

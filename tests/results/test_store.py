@@ -19,8 +19,8 @@ import pytest
 from paths import ROOT
 
 from frbcli.errors import InputError, RunFileError
-from frbcli.results import growing
-from frbcli.results.files.container import USER_BLOCK, seal
+from frbcli.results import records
+from frbcli.results.container import USER_BLOCK, seal
 from frbcli.results.store import Header, Run, RunWriter, check_output, read_run
 
 HEADER = Header(
@@ -318,7 +318,7 @@ def test_a_file_of_holes_is_refused_for_its_size(run_path: Path) -> None:
 
 
 def test_a_run_that_is_too_long_for_memory_is_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(growing, "IN_MEMORY", 100)
+    monkeypatch.setattr(records, "IN_MEMORY", 100)
     path = tmp_path / "run.h5"
     writer = RunWriter(path, HEADER)
     for first in range(0, 40, 8):
@@ -340,7 +340,7 @@ def test_a_run_that_is_too_long_for_memory_is_the_same(tmp_path: Path, monkeypat
 
 
 def test_a_signal_for_which_the_disk_has_no_room_stays_in_memory(tmp_path: Path) -> None:
-    signal = growing.GrowingSignal()
+    signal = records.GrowingSignal()
     signal.append(np.arange(3.0))
     signal.move(tmp_path / "nowhere")
     signal.append(np.arange(3.0, 5.0))

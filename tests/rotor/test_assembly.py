@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from frbcli.rotor.assembly import Link, assembled, held_rotor
-from frbcli.rotor.body import point_mass
+from frbcli.rotor.assembly import Link, assembled, held_rotor, point_mass
 from frbcli.rotor.loads import LinearPart
 
 GRAVITY = 9.81

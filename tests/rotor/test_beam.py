@@ -13,8 +13,16 @@ from scipy.optimize import brentq
 from frbcli.arrays import Array
 from frbcli.rotor import reduction
 from frbcli.rotor.beam import BeamSection, Plane, beam
-from frbcli.rotor.reduction import MOST, FreeModes, free_modes, reduction_error, whirl_modes
-from frbcli.rotor.turbocharger import Journal, Wheel, wheels_on_shaft
+from frbcli.rotor.reduction import (
+    MOST,
+    FreeModes,
+    Journal,
+    Wheel,
+    free_modes,
+    reduction_error,
+    wheels_on_shaft,
+    whirl_modes,
+)
 
 SLENDER = BeamSection(1.0, 5e-4, 0.0, 7850.0, 210e9, 0.3)
 THICK = BeamSection(0.2, 0.05, 0.02, 7850.0, 210e9, 0.3)

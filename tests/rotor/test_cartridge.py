@@ -20,8 +20,7 @@ from frbcli.equilibrium.ring_speed import concentric_ratios
 from frbcli.errors import InputError
 from frbcli.linear.stability import stability_points
 from frbcli.report.sketch import rotor_sketch
-from frbcli.rotor.assembly import LinearRotor, Link, assembled, without_spins
-from frbcli.rotor.body import spin, tilting_mass
+from frbcli.rotor.assembly import LinearRotor, Link, assembled, spin, tilting_mass, without_spins
 from frbcli.rotor.loads import SpeedProfile, speed_profile
 from frbcli.runs.run import runup
 from frbcli.runs.start import state_at

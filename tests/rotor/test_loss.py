@@ -24,7 +24,7 @@ from frbcli.runs.march import March
 from frbcli.scene.changes import after_losses, case_at
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.system import make_segments
-from frbcli.scene.planning.eccentricity import run_up_profile
+from frbcli.scene.planning.cell_choice import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import FINISHED, RUNNING
 

@@ -12,8 +12,7 @@ from marches import DIAMETRAL, LENGTH, POLAR, RHO, D, flat_films, march, rigid_s
 import frbcli
 from frbcli.case.schema import Case
 from frbcli.cycles.shooting.period_map import period_map
-from frbcli.cycles.shooting.rest import settled
-from frbcli.cycles.shooting.shots import Shooting
+from frbcli.cycles.shooting.shots import Shooting, settled
 from frbcli.equilibrium.linearised import first_order, linearised
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.ring_speed import ring_torques
@@ -23,13 +22,12 @@ from frbcli.errors import InputError
 from frbcli.film.cells.tilted.steady_force import tilted_force
 from frbcli.film.kinds.tilted import TiltedFilms
 from frbcli.linear.stability import stability_points
-from frbcli.rotor.assembly import without_spins
-from frbcli.rotor.body import COORDINATES, PLANE
+from frbcli.rotor.assembly import COORDINATES, PLANE, without_spins
 from frbcli.rotor.loads import speed_profile
 from frbcli.runs.start import state_at
 from frbcli.scene.forms.tilted import TiltedForm
-from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import SPEED_CYCLES
+from frbcli.scene.gate.static import faults
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan

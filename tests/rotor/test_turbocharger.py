@@ -17,15 +17,14 @@ from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.reading.load import case_from_dict, load_case
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
-from frbcli.equilibrium.coefficients import RestingFilm
+from frbcli.equilibrium.linearised import RestingFilm
 from frbcli.errors import InputError
 from frbcli.linear.modes import direct_springs, film_springs, natural_modes
 from frbcli.linear.stability_point import eigenvalues
 from frbcli.plot.machine.modes import modes_figure
-from frbcli.rotor.assembly import LinearRotor, Link, assembled, without_spins
-from frbcli.rotor.body import Body, jeffcott_rotor, point_mass
+from frbcli.rotor.assembly import Body, LinearRotor, Link, assembled, jeffcott_rotor, point_mass, without_spins
 from frbcli.scene.machine.rotor import make_rotor
-from frbcli.scene.shafts.table import shaft_of
+from frbcli.scene.machine.turbocharger import shaft_of
 
 GRAVITY = 9.81
 SPRING = 5e6

@@ -12,14 +12,11 @@ from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import NotConverged
 from frbcli.runs import march
-from frbcli.runs.errors.account import grows_late
-from frbcli.runs.errors.error_budget import FewerCells, FilmErrors, grows_from, summed
-from frbcli.runs.errors.second_run import (
-    on_fewer_cells,
-)
+from frbcli.runs.error_budget import FewerCells, FilmErrors, grows_from, summed
 from frbcli.runs.run import runup
+from frbcli.runs.second_run import grows_late, on_fewer_cells
 from frbcli.scene.machine.system import make_segments, make_system
-from frbcli.scene.planning.eccentricity import run_up_profile
+from frbcli.scene.planning.cell_choice import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import ERROR_LARGEST, ERROR_SPANS, NUMBERS, RUN_END, TIME
 from frbcli.solve.step import ERROR_MEMORY, book_error

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import frbcli
-from frbcli.case.course.time_tables import inputs_of
 from frbcli.case.reading.load import load_case, load_case_text
+from frbcli.case.reading.time_tables import inputs_of
 from frbcli.equilibrium.resting import resting_position
-from frbcli.equilibrium.warm_machine import warm_machine
+from frbcli.equilibrium.static_machine import warm_machine
 from frbcli.errors import InputError
 from frbcli.runs import march
 from frbcli.runs.inputs import RunInputs

@@ -15,8 +15,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import InputError, RunFileError
 from frbcli.film.cells.data import SHEARED
 from frbcli.plot.moving import MOMENTS, animate_films, film_moments_figure
-from frbcli.results.kept_films import GAS, OIL, KeptFilm, kept_film
-from frbcli.results.store import Run
+from frbcli.results.store import GAS, OIL, KeptFilm, Run, kept_film
 from frbcli.runs import march
 from frbcli.scene.machine.system import make_system
 

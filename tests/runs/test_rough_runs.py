@@ -17,7 +17,7 @@ from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.equilibrium import static_films
 from frbcli.equilibrium.resting import resting_position
-from frbcli.equilibrium.warm_machine import warm_machine
+from frbcli.equilibrium.static_machine import warm_machine
 from frbcli.film.roughness.asperities import LAST, touch
 from frbcli.linear.sheets.bearing import bearing_sheet
 from frbcli.linear.stability import stability

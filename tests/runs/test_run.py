@@ -18,7 +18,7 @@ from numba.core.event import trigger_event
 from frbcli.analysis.events import find_events
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
-from frbcli.compilation import COMPILE
+from frbcli.compiled import COMPILE
 from frbcli.errors import InputError, NotConverged
 from frbcli.results.store import Run, read_run
 from frbcli.runs import march

@@ -17,15 +17,14 @@ from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.errors import NotConverged
 from frbcli.results.store import Run, read_run
-from frbcli.runs.errors import second_run
-from frbcli.runs.errors.account import about_certainty
+from frbcli.runs import second_run
 from frbcli.runs.march import March
 from frbcli.runs.run import run_cost, runup
+from frbcli.runs.second_run import about_certainty
 from frbcli.scene.cost import expected_cost
 from frbcli.scene.machine.system import make_segments
-from frbcli.scene.planning.eccentricity import run_up_profile
-from frbcli.scene.planning.error_runs import cost_of_run, is_cheap, second_run_s
-from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.cell_choice import run_up_profile
+from frbcli.scene.planning.plan import cost_of_run, is_cheap, make_plan, second_run_s
 from frbcli.solve.state import RUNNING
 
 CASE = ("film.theory=short", "output.step=0.2 ms")

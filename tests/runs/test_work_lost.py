@@ -22,7 +22,7 @@ from frbcli.bearing_tests import tested_film
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError, NotConverged
-from frbcli.results.files.container import seal
+from frbcli.results.container import seal
 from frbcli.runs.march import March
 from frbcli.runs.run import runup
 from frbcli.studies import accuracy as ladder

@@ -12,20 +12,29 @@ import pytest
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.film.grid import Mesh
-from frbcli.runs.record.header import header
+from frbcli.runs.header import header
 from frbcli.runs.run import runup
 from frbcli.scene.cost import expected_cost, signal_count
 from frbcli.scene.course import STAGES, whirl_speed
-from frbcli.scene.forms.cells import CELLS
-from frbcli.scene.forms.tables import CHAINS, CLOSED_FORM, FIELDS, TABLE
-from frbcli.scene.forms.tilted import TiltedForm
+from frbcli.scene.forms.form import CHAINS, CLOSED_FORM, FIELDS, TABLE
+from frbcli.scene.forms.tilted import CELLS, TiltedForm
 from frbcli.scene.machine.system import make_segments
-from frbcli.scene.planning.cell_choice import ALONG, AROUND, GROOVE, WorstFilm, cells_time, fewest_cells, worst_film
-from frbcli.scene.planning.eccentricity import expected_eccentricity, run_down_profile, run_up_profile, short_error
-from frbcli.scene.planning.film_choice import choose_films
+from frbcli.scene.planning.cell_choice import (
+    ALONG,
+    AROUND,
+    GROOVE,
+    WorstFilm,
+    cells_time,
+    expected_eccentricity,
+    fewest_cells,
+    run_down_profile,
+    run_up_profile,
+    short_error,
+    worst_film,
+)
+from frbcli.scene.planning.film_choice import Plan, choose_films
 from frbcli.scene.planning.plan import CELL_SHARE, TIGHT_SHARE, expected_error, make_plan
-from frbcli.scene.planning.planned import Plan
-from frbcli.solve.tableau import METHODS
+from frbcli.solve.state import METHODS
 
 WITHIN = 2.0  # of the real cost
 LATE, SPAN_s = 0.7, 0.25  # where a part of a run-up begins, over its speeds, and the CPU time that it is to take

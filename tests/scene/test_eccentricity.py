@@ -12,8 +12,7 @@ from scipy.optimize import fsolve
 from frbcli.case.reading.load import load_case
 from frbcli.runs.advice import accuracy_advice
 from frbcli.runs.run import runup
-from frbcli.scene.planning.cell_choice import PLAIN, gap_ratio
-from frbcli.scene.planning.eccentricity import LARGEST, expected_eccentricity, mobility, resting_load
+from frbcli.scene.planning.cell_choice import LARGEST, PLAIN, expected_eccentricity, gap_ratio, mobility, resting_load
 from frbcli.scene.planning.plan import make_plan
 
 OIL = ("speed.to=24 Hz", "speed.duration=0.8 s", "output.step=1 ms", "accuracy.target=1e-2")

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from frbcli.case.reading.load import load_case, load_case_text
+from frbcli.scene.planning.film_choice import Decision
 from frbcli.scene.planning.kinematic_plan import kinematic_plan
 from frbcli.scene.planning.plan import expected_error, make_plan
-from frbcli.scene.planning.planned import Decision
 
 OWN = 'cavitation = "half-sommerfeld"'
 

@@ -12,17 +12,16 @@ import pytest
 from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
-from frbcli.cli.casefiles import check
+from frbcli.cli import check
 from frbcli.cli.main import run as frb
-from frbcli.compilation import CompilationNeededError
+from frbcli.compiled import CompilationNeededError
 from frbcli.errors import NotConverged
 from frbcli.runs import march
-from frbcli.runs.errors import trial as tried
+from frbcli.runs import second_run as tried
 from frbcli.scene.machine.system import make_segments
-from frbcli.scene.planning.eccentricity import run_up_profile
-from frbcli.scene.planning.error_runs import Trial, planned_trial
-from frbcli.scene.planning.plan import expected_error, make_plan
-from frbcli.scene.planning.planned import Plan
+from frbcli.scene.planning.cell_choice import run_up_profile
+from frbcli.scene.planning.film_choice import Plan
+from frbcli.scene.planning.plan import Trial, expected_error, make_plan, planned_trial
 from frbcli.solve.state import RUNNING
 
 RINGS = "floating-ring"

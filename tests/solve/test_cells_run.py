@@ -17,16 +17,15 @@ from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cells.data import VolumeFilms
 from frbcli.results.store import read_run
+from frbcli.runs.films import oil_defect
 from frbcli.runs.march import Progress, control_of
-from frbcli.runs.record.films import oil_defect
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.course import STAGES
 from frbcli.scene.machine.system import System, make_system, settled_share
-from frbcli.scene.planning.eccentricity import run_up_profile
+from frbcli.scene.planning.cell_choice import run_up_profile
+from frbcli.scene.planning.film_choice import Plan
 from frbcli.scene.planning.plan import make_plan
-from frbcli.scene.planning.planned import Plan
-from frbcli.solve.state import FINISHED, REJECTED, RUNNING, SOLVES, STEP, STEPS, State, make_output
-from frbcli.solve.tableau import METHODS
+from frbcli.solve.state import FINISHED, METHODS, REJECTED, RUNNING, SOLVES, STEP, STEPS, State, make_output
 from frbcli.solve.time_loop import advance
 
 SHORT = ["speed.duration=0.1s", "speed.to=30Hz", "speed.from=20Hz", "output.step=0.5ms", "accuracy.mesh=[5,32]"]

@@ -21,22 +21,20 @@ from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.channels.channel import Channel, channel_resistance
 from frbcli.film.cells.channels.data import with_channels
 from frbcli.film.cells.data import OIL, PASSED, UNKNOWN, W, volume_films
-from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.film import Motion, VolumeFilm
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.linear.stability import stability
+from frbcli.runs.films import oil_defect
 from frbcli.runs.march import control_of
-from frbcli.runs.record.films import oil_defect
 from frbcli.runs.start import first_state, rotor_data
-from frbcli.scene.channels import coupled_channels
+from frbcli.scene.films import coupled_channels
 from frbcli.scene.machine.system import System, make_system
-from frbcli.scene.planning.eccentricity import run_up_profile
+from frbcli.scene.planning.cell_choice import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.cosimulation import _solve_films
 from frbcli.solve.films.steps import begin_stage, make_work
 from frbcli.solve.stage.equations import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, X_0, U
-from frbcli.solve.state import RUNNING, State, make_output
-from frbcli.solve.tableau import METHODS
+from frbcli.solve.state import METHODS, RUNNING, State, make_output
 from frbcli.solve.time_loop import advance
 
 COUPLED = ("bearing.channels=coupled", "accuracy.mesh=[5,32]", "output.step=1e-4")

@@ -20,7 +20,7 @@ from frbcli.rotor.loads import speed_profile
 from frbcli.runs.march import March
 from frbcli.scene.changes import case_at
 from frbcli.scene.machine.system import Segment, make_segments, make_system
-from frbcli.scene.planning.eccentricity import run_up_profile
+from frbcli.scene.planning.cell_choice import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import FINISHED, RUNNING, State
 

@@ -12,13 +12,12 @@ from frbcli.film.cells.balance.balances import GAS_IN, GAS_OUT, GAS_RELEASED
 from frbcli.film.cells.data import GAS, PASSED
 from frbcli.film.cells.linearised import linear_film, stiffness_at
 from frbcli.film.kinds.tilted import TiltedFilms
+from frbcli.runs.films import oil_defect
 from frbcli.runs.march import control_of
-from frbcli.runs.record.films import oil_defect
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.machine.system import System
-from frbcli.scene.planning.eccentricity import run_up_profile
-from frbcli.solve.state import FINISHED, RUNNING, make_output
-from frbcli.solve.tableau import METHODS
+from frbcli.scene.planning.cell_choice import run_up_profile
+from frbcli.solve.state import FINISHED, METHODS, RUNNING, make_output
 from frbcli.solve.time_loop import advance
 
 

@@ -29,11 +29,9 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import block_diag
 
 from frbcli.film.rectangles.film import evaluate
-from frbcli.rotor.assembly import LinearRotor
-from frbcli.rotor.body import planar
+from frbcli.rotor.assembly import LinearRotor, planar
 from frbcli.rotor.loads import speed_profile
-from frbcli.solve.state import FINISHED, STEP, STEPS, State
-from frbcli.solve.tableau import METHODS, Method, Tableau
+from frbcli.solve.state import FINISHED, METHODS, STEP, STEPS, Method, State, Tableau
 
 ALL_METHODS = pytest.mark.parametrize("method", METHODS.values(), ids=METHODS.keys())
 

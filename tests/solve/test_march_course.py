@@ -12,8 +12,7 @@ from scipy.integrate import simpson
 from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.loads import speed_profile
 from frbcli.runs.start import rotor_data
-from frbcli.solve.state import CONTACT, FINISHED, LARGEST_EPS, RUNNING, STEPS, TIME, make_output
-from frbcli.solve.tableau import METHODS
+from frbcli.solve.state import CONTACT, FINISHED, LARGEST_EPS, METHODS, RUNNING, STEPS, TIME, make_output
 from frbcli.solve.time_loop import advance
 
 # --- the course of a march ---

@@ -12,7 +12,7 @@ from frbcli.case.reading.load import load_case
 from frbcli.errors import InputError
 from frbcli.results.store import Run, check_output
 from frbcli.runs.march import Progress
-from frbcli.studies.side_by_side import RunTask, in_turn, side_by_side
+from frbcli.studies.against import RunTask, in_turn, side_by_side
 
 QUICK = ("speed.from=20 Hz", "speed.to=120 Hz", "film.theory=short", "output.step=2e-4 s")
 LAWS = ("half-sommerfeld", "sommerfeld")

@@ -16,13 +16,11 @@ from sweep_points import CLEARANCES, SHORT, TWO, VISCOSITIES
 from frbcli import Case, InputError, load_case, read_run, runup, stability, sweep
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.linear.stability import open_spans, threshold_alone
-from frbcli.linear.stability_point import point_at_rest
-from frbcli.linear.threshold import find_threshold
+from frbcli.linear.stability_point import find_threshold, point_at_rest
 from frbcli.studies.sweep import sweep as study
 from frbcli.studies.sweep.points import grid, product, read_list, split_values
 from frbcli.studies.sweep.sweep import LOG, SweepPoint, Workers
-from frbcli.studies.sweep.task import Task, solve
-from frbcli.studies.sweep.workers import DIED, solved
+from frbcli.studies.sweep.workers import DIED, Task, solve, solved
 
 
 @pytest.fixture(scope="module")

@@ -16,7 +16,7 @@ from frbcli.cli.main import run as frb
 from frbcli.studies.sweep.points import linked, read_correlation, read_distribution, read_values, samples
 from frbcli.studies.sweep.scatter import _wilson, scatter, whirl_speed
 from frbcli.studies.sweep.sweep import Sweep, SweepPoint, Workers, sweep
-from frbcli.studies.sweep.task import NO_WHIRL
+from frbcli.studies.sweep.workers import NO_WHIRL
 
 SHORT = "film.theory=short"
 

@@ -19,13 +19,13 @@ from frbcli.cli.main import run
 from frbcli.runs.inputs import RunInputs
 from frbcli.runs.start import control_of, rotor_data
 from frbcli.scene.machine.system import make_segments
-from frbcli.scene.planning.eccentricity import run_up_profile
+from frbcli.scene.planning.cell_choice import run_up_profile
 from frbcli.studies.warm_up import ShortAnalysis, _compile, machine_kernels, short_analyses
 
 # A run-up in which nothing may be compiled
 RUN = """
 import sys, frbcli
-from frbcli.compilation import counted
+from frbcli.compiled import counted
 with counted() as compilations:
     frbcli.runup(frbcli.load_case("seal", ["speed.duration=0.01 s"]), sys.argv[1])
 assert compilations.functions == 0, compilations.functions

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from test_heat import single
 
-from frbcli.equilibrium.warm_machine import warm_machine
+from frbcli.equilibrium.static_machine import warm_machine
 from frbcli.runs.run import runup
 from frbcli.scene.machine.heat import heat_of
 

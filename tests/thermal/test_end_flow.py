@@ -8,7 +8,7 @@ from films import rectangular
 
 from frbcli.case.reading.load import load_case
 from frbcli.film.cells.balance.side_flow import outflow
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.film import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
 from frbcli.film.rectangles.end_flow import TableEndFlow, end_flow, make_end_flow

@@ -15,7 +15,7 @@ from frbcli.bearing_tests.kinematic import rotation
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
-from frbcli.equilibrium.warm_machine import warm_machine
+from frbcli.equilibrium.static_machine import warm_machine
 from frbcli.errors import InputError, NotConverged
 from frbcli.linear.stability import stability
 from frbcli.materials import OILS

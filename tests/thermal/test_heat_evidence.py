@@ -22,8 +22,8 @@ from frbcli.film.cells.data import (
     SIN,
     volume_films,
 )
+from frbcli.film.cells.film import Motion
 from frbcli.film.cells.loads import force
-from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.linear.sheets.bearing import sommerfeld_chart
 from frbcli.materials import OILS

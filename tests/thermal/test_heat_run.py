@@ -14,7 +14,7 @@ from test_heat import RING, ring_case, single
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
-from frbcli.equilibrium.warm_machine import warm_machine
+from frbcli.equilibrium.static_machine import warm_machine
 from frbcli.errors import NotConverged
 from frbcli.materials import OILS
 from frbcli.plot.run.quantities import quantity_figure
@@ -23,7 +23,7 @@ from frbcli.runs.march import March
 from frbcli.runs.run import runup
 from frbcli.scene.machine.heat import heat_of, warm_case
 from frbcli.scene.machine.system import make_segments
-from frbcli.scene.planning.eccentricity import run_up_profile
+from frbcli.scene.planning.cell_choice import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import RUNNING
 from frbcli.studies.compare import compare

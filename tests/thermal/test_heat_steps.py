@@ -10,13 +10,13 @@ from test_heat import single
 from test_heat_run import HOT_HOUSING, STILL, at_speed
 
 from frbcli.case.schema import Case
-from frbcli.equilibrium.warm_machine import warm_machine
+from frbcli.equilibrium.static_machine import warm_machine
 from frbcli.errors import InputError
 from frbcli.runs.march import March
 from frbcli.runs.run import runup
 from frbcli.scene.changes import case_at
 from frbcli.scene.machine.system import make_segments
-from frbcli.scene.planning.eccentricity import run_up_profile
+from frbcli.scene.planning.cell_choice import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import FINISHED, RUNNING
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from frbcli.analysis.ridges import ridge_speeds, ridges
+from frbcli.analysis.resonance import ridge_speeds, ridges
 from frbcli.bearing_tests.kinematic import KinematicResult, rotation
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from frbcli.analysis.events import find_events
-from frbcli.analysis.orders.subsynchronous import whirl_names
 from frbcli.analysis.signals import joined, points
+from frbcli.analysis.subsynchronous import whirl_names
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.results.store import Run, read_run

@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import Any
 
 from frbcli.case.elements import AXES
-from frbcli.case.files.number_table import Columns, Refused, finite, number_table, text_of, with_file
+from frbcli.case.reading.coefficient_files import Columns, Refused, finite, number_table, text_of, with_file
+from frbcli.case.reading.settings import TomlFault, parse
 from frbcli.case.reading.tables import Breach, tables
-from frbcli.case.reading.text import TomlFault, parse
 
 MOST_SPEEDS = 2000
 SPEED = "speed_Hz"

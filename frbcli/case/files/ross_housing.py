@@ -20,8 +20,8 @@ from scipy.sparse.csgraph import connected_components
 
 from frbcli.arrays import Array
 from frbcli.case.elements import AXES
-from frbcli.case.files.number_table import Refused
-from frbcli.case.files.ross import POINT_MASS, REMEDY, RossElement, ross_elements, shaft_of_file
+from frbcli.case.reading.coefficient_files import Refused
+from frbcli.case.reading.ross import POINT_MASS, REMEDY, RossElement, ross_elements, shaft_of_file
 
 COUPLED = 1e-6  # of the largest damping of the modes of a housing: that between two of them
 LOOSE = 1e-12  # of the largest square of a frequency

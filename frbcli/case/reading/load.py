@@ -9,23 +9,21 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from frbcli.case.course.time_tables import with_input_files, with_speed_points, with_time_tables
 from frbcli.case.files.coefficient_files import with_coefficient_files
-from frbcli.case.files.housing_modes import with_housing_file
-from frbcli.case.files.ross import with_rotor_file
 from frbcli.case.model import Model
-from frbcli.case.reading.settings import with_setting, with_value
+from frbcli.case.over_time import machine_breaches
+from frbcli.case.reading.coefficient_files import with_housing_file
+from frbcli.case.reading.ross import with_rotor_file
+from frbcli.case.reading.settings import DEEPEST, TomlFault, as_tables, parse, to_toml, with_setting, with_value
 from frbcli.case.reading.shipped import find_shipped, nearest, shipped_names
 from frbcli.case.reading.tables import Path as KeyPath
 from frbcli.case.reading.tables import at, key_lines
-from frbcli.case.reading.text import DEEPEST, TomlFault, as_tables, parse, to_toml
+from frbcli.case.reading.time_tables import with_input_files, with_speed_points, with_time_tables
 from frbcli.case.rules.checks import Breach, breaches
 from frbcli.case.rules.faults import MISSING, UNKNOWN, objections, with_nearest_kinds
 from frbcli.case.schema import Case
-from frbcli.case.surroundings.places import machine_breaches
 from frbcli.errors import Fault, InputError
-from frbcli.results.files.named import NoFile, NoText, Unreadable, begins_with, text_of
-from frbcli.results.files.write import RUN_BEGINS
+from frbcli.results.write import RUN_BEGINS, NoFile, NoText, Unreadable, begins_with, text_of
 
 _Set = Callable[[Mapping[str, Any]], tuple[dict[str, Any], KeyPath]]  # sets one key; raises TomlFault
 

@@ -10,11 +10,10 @@ from typing import Any
 from pydantic import TypeAdapter, ValidationError
 
 from frbcli.case.film import ColdClearance, Profile
-from frbcli.case.oil import ATMOSPHERE, Grade, Oil, Vogel
+from frbcli.case.oil import ATMOSPHERE, HOTTEST_FILM, Grade, Oil, Vogel
+from frbcli.case.over_time import is_over_time, values_of
 from frbcli.case.reading.tables import Breach, Path, number, ring_films, table, tables
 from frbcli.case.supplies import supply_named
-from frbcli.case.surroundings.over_time import is_over_time, values_of
-from frbcli.case.thermal import HOTTEST_FILM
 from frbcli.materials import OILS, VogelLaw
 from frbcli.units import NUMBER, display
 

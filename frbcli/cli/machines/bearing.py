@@ -12,8 +12,7 @@ import click
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import CASE_FILE, forced, here
 from frbcli.cli.options import LOAD_OPTION, REST_OPTION, Command, film_option, speeds_option
-from frbcli.cli.outputs import OutputOptions, outputs_options
-from frbcli.cli.progress import computing, display
+from frbcli.cli.progress import OutputOptions, computing, display, outputs_options
 from frbcli.errors import NotConverged
 
 if TYPE_CHECKING:
@@ -72,7 +71,7 @@ def command(
     from frbcli.errors import NotConverged
     from frbcli.linear.sheets.bearing import bearing_sheet, sommerfeld_chart
     from frbcli.linear.sheets.film_state import heat_capacity
-    from frbcli.results.files.write import ROSS
+    from frbcli.results.write import ROSS
 
     if not case.bearings and any(bearing.kind == "ball" for bearing in case.elements):
         if over == "eccentricity" or film is not None:
@@ -242,7 +241,7 @@ def ball_sheet(
     """Compute, show and write the sheet; the exit code."""
     from frbcli.linear.sheets.ball import ball_bearing_sheet
     from frbcli.results.export import ross_files
-    from frbcli.results.files.write import ROSS
+    from frbcli.results.write import ROSS
 
     if ross is not None and len(loads) > 1:
         raise click.UsageError("--ross is a table over speed, at one load.")

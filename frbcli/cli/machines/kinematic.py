@@ -13,8 +13,7 @@ from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import here
 from frbcli.cli.machines.static_tables import film_document, show_film
 from frbcli.cli.options import Command, cavitation_option
-from frbcli.cli.outputs import OutputOptions, outputs_options
-from frbcli.cli.progress import computing
+from frbcli.cli.progress import OutputOptions, computing, outputs_options
 from frbcli.errors import INTERRUPTED, NotConverged
 
 if TYPE_CHECKING:
@@ -72,7 +71,7 @@ def _report(test: KinematicTest, terminal: Terminal) -> None:
     """Two tables: forces and oil."""
     from frbcli.bearing_tests.columns import FORCES, GASES, OIL, error_column, force_size, result_columns
     from frbcli.columns import table_of
-    from frbcli.scene.tilt import states_moment
+    from frbcli.scene.films import states_moment
 
     largest = max(map(force_size, test.results), default=0.0)
     columns = (*result_columns(states_moment(test.case), test.carries_gas), error_column(largest))
@@ -108,7 +107,7 @@ def _document(test: KinematicTest, result: KinematicResult) -> dict[str, Any]:
     """A result in JSON; null where there is no solution."""
     from frbcli.bearing_tests.columns import STRIBECK, history_columns, result_columns
     from frbcli.columns import document, named
-    from frbcli.scene.tilt import states_moment
+    from frbcli.scene.films import states_moment
 
     moment = states_moment(test.case)
     history = () if result.plan.test == "rotation" else named(history_columns(moment), "", attrgetter("history"))

@@ -11,13 +11,12 @@ import click
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import INPUTS, here
 from frbcli.cli.options import KEY_RANGE, Command, KeyRange, speeds_option
-from frbcli.cli.outputs import OutputOptions, Outputs, outputs_options
-from frbcli.cli.progress import Display, computing
+from frbcli.cli.progress import Display, OutputOptions, Outputs, computing, outputs_options
 from frbcli.columns import document, documents, table_of
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
-    from frbcli.cycles.result import CyclePoint, LimitCycles, UnbalancedWhirl
+    from frbcli.cycles.columns import CyclePoint, LimitCycles, UnbalancedWhirl
     from frbcli.cycles.stability_map import StabilityMap
     from frbcli.plot.curves import RunTrack
     from frbcli.plot.style import Picture
@@ -80,7 +79,7 @@ def command(
 
 
 def _kernels(case: Case) -> Kernels:
-    from frbcli.scene.gate.cycles import by_shooting
+    from frbcli.scene.gate.static import by_shooting
 
     return "both" if by_shooting(case) else "loop"
 
@@ -183,8 +182,7 @@ def _showing(shown: Display) -> Callable[[int, float, float], None]:
 
 
 def _show(terminal: Terminal, diagram: LimitCycles) -> None:
-    from frbcli.cycles.columns import special_columns
-    from frbcli.cycles.result import SPEED
+    from frbcli.cycles.columns import SPEED, special_columns
 
     terminal.show(
         diagram.case.heading, table_of(special_columns(diagram.films, diagram.over, diagram.unit), diagram.special)
@@ -237,7 +235,7 @@ def _show_with_unbalance(terminal: Terminal, diagram: LimitCycles) -> None:
 
 def _left_out(diagram: LimitCycles) -> list[str]:
     from frbcli.scene.changes import loss_note, step_times
-    from frbcli.scene.gate.cycles import drives
+    from frbcli.scene.gate.static import drives
 
     notes = []
     if any(point.kind == "torus" for point in diagram.special):

@@ -14,17 +14,16 @@ from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import INPUT, here
 from frbcli.cli.machines.static_tables import reduction_document, show_coefficient_error, show_reduction
 from frbcli.cli.options import OPERATING_OPTION, Command, GradeOption, speeds_option
-from frbcli.cli.outputs import OutputOptions, outputs_options, picture_of
-from frbcli.cli.progress import computing
+from frbcli.cli.progress import OutputOptions, computing, outputs_options, picture_of
 from frbcli.errors import Fault, InputError
 from frbcli.units import SpeedUnit
 
 if TYPE_CHECKING:
-    from frbcli.analysis.orders.order_tracking import OrderTrack
+    from frbcli.analysis.order_tracking import OrderTrack
     from frbcli.case.schema import Case
     from frbcli.linear.balance_quality import BalanceQuality
+    from frbcli.linear.damped_modes import VibrationLimits
     from frbcli.linear.response import Response
-    from frbcli.linear.vibration import VibrationLimits
     from frbcli.plot.style import Picture
     from frbcli.results.store import Run
     from frbcli.rotor.reduction import Reduction
@@ -73,9 +72,9 @@ def command(
     from frbcli.columns import documents, spread_table
     from frbcli.linear.balance_quality import balance_quality
     from frbcli.linear.columns import PEAKS, RESPONSE_COEFFICIENTS, RESPONSE_FILMS, RESPONSE_FORCES
+    from frbcli.linear.damped_modes import vibration_limits
     from frbcli.linear.modes import own_reduction
     from frbcli.linear.response import response
-    from frbcli.linear.vibration import vibration_limits
     from frbcli.results.store import read_run
     from frbcli.scene.changes import loss_times
 
@@ -130,7 +129,7 @@ def _tracks(run: Run, known: tuple[str, ...], name: str) -> tuple[OrderTrack, ..
     """The synchronous motion of the journals and disks of a run that are points of the response.
 
     Raises InputError if none is, which is then a run of another machine."""
-    from frbcli.analysis.orders.order_tracking import order_track
+    from frbcli.analysis.order_tracking import order_track
     from frbcli.analysis.signals import joined, points
 
     recorded = [joined(kind, node) for kind in ("journal", "disk") for node in points(run.signals, kind)]
@@ -235,7 +234,7 @@ def _among(some: list[float], speeds: Array, unit: SpeedUnit) -> str:
 def show_limits(terminal: Terminal, limits: VibrationLimits) -> None:
     """Tables of the points of the shaft with their limits, and of the critical speeds with their margins."""
     from frbcli.columns import table_of
-    from frbcli.linear.vibration import (
+    from frbcli.linear.damped_modes import (
         API,
         API_FORMULA,
         API_POINTS,
@@ -292,7 +291,7 @@ def show_grade(terminal: Terminal, grade: BalanceQuality) -> None:
 def limits_document(limits: VibrationLimits) -> dict[str, object]:
     """As JSON."""
     from frbcli.columns import documents
-    from frbcli.linear.vibration import API_FORMULA, API_POINTS, ISO_FORMULA, ISO_POINTS, MARGINS
+    from frbcli.linear.damped_modes import API_FORMULA, API_POINTS, ISO_FORMULA, ISO_POINTS, MARGINS
 
     return {
         "operating_Hz": limits.operating_Hz,

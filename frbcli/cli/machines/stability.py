@@ -23,8 +23,7 @@ from frbcli.cli.machines.static_tables import (
     show_reduction,
 )
 from frbcli.cli.options import REST_OPTION, SPEED_OPTION, STIFFNESS_OPTION, Command, speeds_option
-from frbcli.cli.outputs import OutputOptions, outputs_options, picture_of
-from frbcli.cli.progress import computing
+from frbcli.cli.progress import OutputOptions, computing, outputs_options, picture_of
 from frbcli.columns import document, documents, table_of
 from frbcli.units import PER_MINUTE, SpeedUnit
 
@@ -32,13 +31,12 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from frbcli.case.schema import Case
-    from frbcli.cli.outputs import Outputs
-    from frbcli.cycles.explain import ThresholdKind
+    from frbcli.cli.progress import Outputs
+    from frbcli.cycles.limit_cycles import ThresholdKind
     from frbcli.linear.damped_modes import DampedMode
     from frbcli.linear.modes import Mode, Modes
     from frbcli.linear.stability import Stability
-    from frbcli.linear.stability_point import StabilityPoint
-    from frbcli.linear.threshold import Threshold
+    from frbcli.linear.stability_point import StabilityPoint, Threshold
     from frbcli.rotor.reduction import Reduction
 
 LONGEST_TABLE = 13  # rows of the text
@@ -73,8 +71,8 @@ def command(
     from frbcli.errors import NotConverged
     from frbcli.linear.modes import natural_modes, own_reduction
     from frbcli.linear.stability import stability
-    from frbcli.scene.gate.gate import faults
     from frbcli.scene.gate.rule import CYCLES
+    from frbcli.scene.gate.static import faults
 
     if shapes is not None and (stiffness is not None or speeds):
         raise click.UsageError("--shapes stands alone: it is of one speed, on the films of the case.")
@@ -90,7 +88,7 @@ def command(
         analysis = stability(case, speeds or None, shown.counting(), with_threshold)
         kind = None
         if analysis.threshold is not None and not faults(case, CYCLES):
-            from frbcli.cycles.explain import threshold_kind  # takes long to load
+            from frbcli.cycles.limit_cycles import threshold_kind  # takes long to load
 
             kind = threshold_kind(case, analysis.threshold.speed_Hz)
     reduced = own_reduction(case, analysis.points)

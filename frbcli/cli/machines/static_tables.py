@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from frbcli.cli.common import Terminal
-    from frbcli.equilibrium.warm_machine import FilmTemperature, WarmMachine
+    from frbcli.equilibrium.static_machine import FilmTemperature, WarmMachine
     from frbcli.linear.stability import Stability
     from frbcli.linear.stability_point import StabilityPoint
     from frbcli.rotor.reduction import Reduction
@@ -131,7 +131,7 @@ def show_largest_error(terminal: Terminal, errors: Iterable[tuple[float, float]]
 def heat_document(warm: WarmMachine) -> dict[str, object]:
     """Temperatures, viscosities, losses and flows, of one bearing each, and the balance of heat."""
     from frbcli.columns import document, documents
-    from frbcli.equilibrium.columns import HEAT_BALANCE, WARM_FILMS, WARM_RINGS
+    from frbcli.equilibrium.linearised import HEAT_BALANCE, WARM_FILMS, WARM_RINGS
 
     films, rings = documents(WARM_FILMS, warm.films), documents(WARM_RINGS, warm.rings)
     return {"films": films, "rings": rings, **document(HEAT_BALANCE, warm.steady)}
@@ -140,7 +140,7 @@ def heat_document(warm: WarmMachine) -> dict[str, object]:
 def show_heat(terminal: Terminal, warm: WarmMachine, title: str) -> None:
     """The films and rings of a warm machine, and where its heat goes."""
     from frbcli.columns import table_of
-    from frbcli.equilibrium.columns import WARM_RINGS
+    from frbcli.equilibrium.linearised import WARM_RINGS
 
     _show_films(terminal, warm.films, title)
     if warm.rings:
@@ -151,15 +151,15 @@ def show_heat(terminal: Terminal, warm: WarmMachine, title: str) -> None:
 def film_document(steady: SteadyHeat) -> dict[str, object]:
     """The heat of a single film, of a bearing test."""
     from frbcli.columns import document, documents
-    from frbcli.equilibrium.columns import HEAT_BALANCE, WARM_FILMS
-    from frbcli.equilibrium.warm_machine import film_temperatures
+    from frbcli.equilibrium.linearised import HEAT_BALANCE, WARM_FILMS
+    from frbcli.equilibrium.static_machine import film_temperatures
 
     return {"films": documents(WARM_FILMS, film_temperatures(steady, [""])), **document(HEAT_BALANCE, steady)}
 
 
 def show_film(terminal: Terminal, steady: SteadyHeat, title: str) -> None:
     """A single film when it is warm, and where its heat goes."""
-    from frbcli.equilibrium.warm_machine import film_temperatures
+    from frbcli.equilibrium.static_machine import film_temperatures
 
     _show_films(terminal, film_temperatures(steady, [""]), title)
     _show_balance(terminal, steady)
@@ -167,7 +167,7 @@ def show_film(terminal: Terminal, steady: SteadyHeat, title: str) -> None:
 
 def _show_films(terminal: Terminal, films: Sequence[FilmTemperature], title: str) -> None:
     from frbcli.columns import table_of
-    from frbcli.equilibrium.columns import WARM_FILMS
+    from frbcli.equilibrium.linearised import WARM_FILMS
 
     table = table_of(WARM_FILMS, films)
     rows = table.cells()

@@ -9,8 +9,7 @@ import click
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import here
 from frbcli.cli.options import LENGTH_OPTION, LOAD_OPTION, Command, speeds_option
-from frbcli.cli.outputs import OutputOptions, outputs_options
-from frbcli.cli.progress import display
+from frbcli.cli.progress import OutputOptions, display, outputs_options
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case

@@ -29,8 +29,8 @@ from frbcli.cli.progress import WRITING, display
 def command(run_file: Path, table_format: str | None, output: Path | None, terminal: Terminal) -> None:
     """Write the signals of RUN.h5, one column each."""
     from frbcli.results.export import FORMATS, export_run, write_csv
-    from frbcli.results.files.write import TABLES
     from frbcli.results.store import read_run
+    from frbcli.results.write import TABLES
 
     to_stdout = output == Path("-")
     suffix = "" if output is None or to_stdout else output.suffix.lower()[1:]

@@ -13,8 +13,7 @@ import click
 from frbcli.cli.common import SETTING, Terminal, output_options
 from frbcli.cli.files import INPUT, check_outputs, force_option, forced, here, next_to
 from frbcli.cli.options import TIME_OPTION, Command, film_option, gathered, look_options, over_option, signal_option
-from frbcli.cli.outputs import draw_wanted, picture_option
-from frbcli.cli.progress import display
+from frbcli.cli.progress import display, draw_wanted, picture_option
 
 if TYPE_CHECKING:
     from frbcli.plot.curves import Over
@@ -72,7 +71,7 @@ def command(
     terminal: Terminal,
 ) -> None:
     """Draw one or several runs in one picture; with --what law, the oil fraction of a case over pressure."""
-    from frbcli.case.course.run import speed_unit_of
+    from frbcli.case.run import speed_unit_of
     from frbcli.results.store import read_run
 
     if animate and what not in MOVING:
@@ -115,8 +114,8 @@ def _animate(
     terminal: Terminal,
 ) -> None:  # fmt: skip
     from frbcli.plot.moving import animate_films, animate_orbits, check_animation
-    from frbcli.results.files.write import PICTURES
     from frbcli.results.store import read_run
+    from frbcli.results.write import PICTURES
 
     check_animation(target, forced())
     check_outputs((target, PICTURES[target.suffix.lower()]))
@@ -133,7 +132,7 @@ def _animate(
 
 def _law(source: str, settings: tuple[str, ...], output: Path | None, terminal: Terminal) -> None:
     from frbcli.case.reading.load import load_case
-    from frbcli.plot.machine.law import law_figure
+    from frbcli.plot.machine.maps import law_figure
 
     case = load_case(source, settings)
     target = output or here(case.name, f"-{LAW}.png")
@@ -149,8 +148,7 @@ def _figure(
     from frbcli.plot.moving import film_moments_figure
     from frbcli.plot.run.motion import displacement_figure, eccentricity_figure, orbit_figure
     from frbcli.plot.run.quantities import quantity_figure
-    from frbcli.plot.run.ring_speed import ring_speed_figure
-    from frbcli.plot.run.summary import summary_figure
+    from frbcli.plot.run.summary import ring_speed_figure, summary_figure
 
     if what == "summary":
         return summary_figure(runs[0])

@@ -27,8 +27,8 @@ def command(
 ) -> None:  # fmt: skip
     """Write RUN.h5 as one page: machine, plan, events, waterfall that reads out under the pointer, orbits, spectra,
     errors, balances, cost and how to repeat it."""
-    from frbcli.results.files.write import PAGE
     from frbcli.results.store import read_run
+    from frbcli.results.write import PAGE
 
     target = output or next_to(run_file, "-report.html")
     check_outputs((target, PAGE))

@@ -13,8 +13,7 @@ import click
 from frbcli.cli.common import Terminal, case_argument, output_options, wrapped
 from frbcli.cli.files import RUN_FILE, check_outputs, force_option, here, next_to
 from frbcli.cli.options import Command, gathered, look_options
-from frbcli.cli.outputs import draw, picture_switch
-from frbcli.cli.progress import Display, LONGEST_LEFT_s, computing, display, progress_line
+from frbcli.cli.progress import Display, LONGEST_LEFT_s, computing, display, draw, picture_switch, progress_line
 from frbcli.columns import table_of
 from frbcli.errors import FrbError
 
@@ -94,8 +93,8 @@ def rundown(case: Case, options: RunOptions, terminal: Terminal) -> int:
 def transient(command: str, run_case: Transient, case: Case, options: RunOptions, terminal: Terminal) -> int:
     """Run a case with progress on the terminal, report, and return the exit code."""
     from frbcli.results.store import check_output
-    from frbcli.runs.errors.second_run import SECOND_RUN
     from frbcli.runs.run import INTERRUPTED, run_cost, standing_run
+    from frbcli.runs.second_run import SECOND_RUN
 
     path = options.output or here(case.name, ".h5")
     check_output(path)
@@ -201,8 +200,7 @@ def _verified(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
 
 def _explained(case: Case, run: Run, terminal: Terminal) -> tuple[str, ...]:
     """The causes of the whirls of a run, as text and for the JSON document."""
-    from frbcli.cycles.explain import explanations
-    from frbcli.cycles.limit_cycles import limit_cycles
+    from frbcli.cycles.limit_cycles import explanations, limit_cycles
 
     try:
         with computing(terminal, case):
@@ -221,8 +219,8 @@ def exit_code(status: str) -> int:
 
 def _show_whirls(run: Run, terminal: Terminal) -> None:
     """Where there are several, a line for each whirl: from where to where, and how large over which clearance."""
-    from frbcli.analysis.orders.subsynchronous import SIDES, whirls
     from frbcli.analysis.signals import bearing_clearance
+    from frbcli.analysis.subsynchronous import SIDES, whirls
 
     seen, unit, rows = whirls(run.events), terminal.speeds, []
     for whirl in seen if len(seen) > 1 else ():
@@ -242,10 +240,10 @@ def _show_whirls(run: Run, terminal: Terminal) -> None:
 def _report(case: Case, run: Run, terminal: Terminal) -> None:
     """Status with its cause and remedy, events, cost and error, as text."""
     from frbcli.analysis.events import about_critical_speeds
-    from frbcli.analysis.orders.subsynchronous import with_whirl_names
-    from frbcli.results.columns import EVENTS
+    from frbcli.analysis.subsynchronous import with_whirl_names
+    from frbcli.results.records import EVENTS
     from frbcli.runs.advice import accuracy_advice, forced_advice, run_advice, run_end
-    from frbcli.runs.errors.account import about_certainty, account
+    from frbcli.runs.second_run import about_certainty, account
 
     terminal.result(f"{run.title}: {run.status} at {run.t_end_s:.4g} s")
     for sentence in (*run_advice(case, run_end(run)), *accuracy_advice(case, run), *forced_advice(case)):

@@ -11,14 +11,13 @@ import click
 from frbcli.cli.common import Terminal, output_options
 from frbcli.cli.files import INPUT, check_outputs, force_option, next_to
 from frbcli.cli.options import TIME_OPTION, Command, Numbers, Span, gathered, look_options, over_option, signal_option
-from frbcli.cli.outputs import draw_wanted, picture_option
-from frbcli.cli.progress import READING, display
-from frbcli.cli.studies.measured import measured_options, run_of, show_columns
+from frbcli.cli.progress import READING, display, draw_wanted, picture_option
+from frbcli.cli.studies.fit import measured_options, run_of, show_columns
 from frbcli.columns import table_of
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
-    from frbcli.analysis.orders.order_tracking import OrderTrack
+    from frbcli.analysis.order_tracking import OrderTrack
     from frbcli.analysis.spectrum import Direction
     from frbcli.plot.curves import Over
     from frbcli.results.store import Run
@@ -84,9 +83,9 @@ def command(
     RUN is a run file, or a measurement as CSV, WAV, MAT or UFF, whose columns --x, --speed-column and so on name.
     """
     from frbcli.analysis.events import about_critical_speeds
-    from frbcli.analysis.orders.subsynchronous import with_whirl_names
-    from frbcli.case.course.run import speed_unit_of
-    from frbcli.results.columns import EVENTS
+    from frbcli.analysis.subsynchronous import with_whirl_names
+    from frbcli.case.run import speed_unit_of
+    from frbcli.results.records import EVENTS
 
     if listed:
         show_columns(run_file, terminal)
@@ -137,7 +136,7 @@ def _orders(
     terminal: Terminal, run: Run, signal: str, orders: tuple[float, ...], axis: Over, view: View, target: Path
 ) -> dict[str, Any]:
     """Draw amplitudes by order, and return their part of the JSON document."""
-    from frbcli.analysis.orders.order_tracking import order_tracks
+    from frbcli.analysis.order_tracking import order_tracks
     from frbcli.plot.curves import orders_figure
 
     with display(terminal):

@@ -10,8 +10,7 @@ import click
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import here
 from frbcli.cli.options import TIME_OPTION, Command, coupling_option, theory_option
-from frbcli.cli.outputs import OutputOptions, outputs_options
-from frbcli.cli.progress import computing
+from frbcli.cli.progress import OutputOptions, computing, outputs_options
 from frbcli.columns import documents, short_number
 from frbcli.errors import INTERRUPTED
 

@@ -12,13 +12,12 @@ import click
 from frbcli.cli.common import Terminal, output_options
 from frbcli.cli.files import INPUT, check_outputs, force_option, forced
 from frbcli.cli.options import Command, Names, speeds_option
-from frbcli.cli.outputs import csv_option
-from frbcli.cli.progress import READING, computing, display
-from frbcli.cli.studies.measured import measured_options, run_of
+from frbcli.cli.progress import READING, computing, csv_option, display
+from frbcli.cli.studies.fit import measured_options, run_of
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
-    from frbcli.balancing.balance import Balancing, TrialRun
+    from frbcli.balancing import Balancing, TrialRun
     from frbcli.results.store import Run
 
 EXAMPLE = 'a=trial.csv:"5 g*mm@30deg"'
@@ -84,9 +83,9 @@ def command(
     Influence coefficients are computed for the case of a computed run. A measured one needs a trial run for each plane,
     with the same columns; --x a,b takes several probes.
     """
-    from frbcli.balancing.balance import TrialRun, balance
-    from frbcli.case.course.run import speed_unit_of
-    from frbcli.results.files.write import TABLES
+    from frbcli.balancing import TrialRun, balance
+    from frbcli.case.run import speed_unit_of
+    from frbcli.results.write import TABLES
 
     check_outputs((csv, TABLES["csv"]))
     with display(terminal, READING):
@@ -97,7 +96,7 @@ def command(
         balancing = balance(run, planes, speeds or None, points or None, tried, triggered)
     _show(terminal, balancing)
     if csv is not None:
-        from frbcli.results.files.write import write_table
+        from frbcli.results.write import write_table
 
         write_table(balancing.to_pandas(), csv, forced())
         terminal.result(f"table: {csv}")
@@ -106,7 +105,7 @@ def command(
 
 def document(balancing: Balancing, run_file: Path) -> dict[str, object]:
     """As JSON."""
-    from frbcli.balancing.balance import POINTS
+    from frbcli.balancing import POINTS
     from frbcli.columns import documents
 
     return {
@@ -153,7 +152,7 @@ def _progress(terminal: Terminal, run: Run, trials: Sequence[TrialRun]) -> Any:
 
 
 def _show(terminal: Terminal, balance: Balancing) -> None:
-    from frbcli.balancing.balance import POINTS
+    from frbcli.balancing import POINTS
     from frbcli.columns import table_of
 
     for doubt in balance.doubts:

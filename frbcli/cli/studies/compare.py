@@ -19,10 +19,9 @@ from frbcli.cli.options import (
     theory_option,
     thermal_option,
 )
-from frbcli.cli.outputs import OutputOptions, outputs_options
-from frbcli.cli.progress import computing, display
+from frbcli.cli.progress import OutputOptions, computing, display, outputs_options
 from frbcli.cli.runs.transient import exit_code
-from frbcli.cli.studies.measured import measured_options, run_of
+from frbcli.cli.studies.fit import measured_options, run_of
 from frbcli.columns import documents, table_of
 from frbcli.errors import input_error
 
@@ -148,7 +147,7 @@ def beside_measured(
     outputs: OutputOptions,
 ) -> None:  # fmt: skip
     """Tables, picture and JSON of a run and a measurement."""
-    from frbcli.case.course.run import speed_unit_of
+    from frbcli.case.run import speed_unit_of
     from frbcli.results.store import read_run
     from frbcli.studies.against import DEVIATIONS, against_measured
 

@@ -1,24 +1,161 @@
-"""`frb fit`: numbers of a case from a measured run."""
+"""`frb fit`: numbers of a case from a measured run.
+
+Options that say which columns of a measurement hold a motion, and the run that it makes.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import CASE_FILE, INPUT, forced, here
-from frbcli.cli.options import KEY_RANGE, Command, KeyRange, Names, signal_option
-from frbcli.cli.outputs import OutputOptions, outputs_options
-from frbcli.cli.progress import READING, computing, display
-from frbcli.cli.studies.measured import measured_options, run_of
+from frbcli.cli.options import (
+    KEY_RANGE,
+    LENGTH_OPTION,
+    SPEED_OPTION,
+    Command,
+    KeyRange,
+    Names,
+    UnitOption,
+    signal_option,
+)
+from frbcli.cli.progress import READING, OutputOptions, computing, display, outputs_options
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
     from frbcli.case.schema import Case
+    from frbcli.cli.common import Terminal
+    from frbcli.results.store import Run
     from frbcli.studies.fit import Fit
+
+
+_GIVEN = "frbcli.measurement"  # in the context of a command
+EITHER = (("time", "rate"), ("speed_column", "speed_at", "tacho"))  # options of which one is enough
+_UNITS = {kind: UnitOption(kind, unit, example) for kind, unit, example in
+          (("length", "m", "um"), ("time", "s", "ms"), ("speed", "Hz", "rpm"))}  # fmt: skip
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+class Rate(click.ParamType["float | str"]):
+    """Samples per second, or the name of a single number of the file."""
+
+    name = "rate"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float | str:
+        """Samples per second, 1/s, or the name."""
+        try:
+            rate = float(str(value))
+        except ValueError:
+            return str(value)
+        if not rate > 0.0:
+            self.fail(f"{value} samples per second are not above 0.", param, ctx)
+        return rate
+
+
+def measured_options(function: Function) -> Function:
+    """Give a command the options of a measurement; it receives `measurement: Measurement | None`."""
+    named: dict[str, tuple[dict[str, Any], str]] = {
+        "x": ({"metavar": "COLUMN"}, "Column of the displacement in x of a measurement; of WAV the channel, from 1."),
+        "y": ({"metavar": "COLUMN"}, "Column of the displacement in y; without it there are no events."),
+        "time": ({"metavar": "COLUMN"}, "Column of the times."),
+        "rate": ({"type": Rate()}, "Samples per second, without a column of times; or a number of the file, as fs."),
+        "speed-column": ({"metavar": "COLUMN"}, "Column of the rotor speed."),
+        "speed-time": ({"metavar": "COLUMN"}, "Column of the times of the rotor speed, where it has its own."),
+        "speed-at": ({"metavar": "SPEED", "type": SPEED_OPTION}, 'A constant rotor speed, e.g. "100 Hz".'),
+        "tacho": ({"metavar": "COLUMN"}, "Column of a signal with pulses, from which the rotor speed follows."),
+        "pulses": (
+            {"type": click.IntRange(min=1), "metavar": "N", "default": 1, "show_default": True},
+            "Pulses per revolution.",
+        ),
+        "slow-roll": (
+            {"metavar": "SPEED", "type": SPEED_OPTION},
+            'Subtract what turns with the rotor at this slow speed, e.g. "10 Hz": runout and bow. Needs --tacho.',
+        ),
+        "unit": ({"type": _UNITS["length"], "show_default": "of the file, or 1 um"}, "Unit of the displacements."),
+        "time-unit": ({"type": _UNITS["time"], "show_default": "of the file, or 1 s"}, "Unit of the times."),
+        "speed-unit": ({"type": _UNITS["speed"], "show_default": "of the file, or 1 Hz"}, "Unit of the rotor speed."),
+    }
+    command: Any = function
+    command = click.option("--clearance", "measurement", metavar="LENGTH", type=LENGTH_OPTION, callback=_measurement,
+                        help='Bearing clearance, to which levels and events refer, e.g. "35 um".')(command)  # fmt: skip
+    for name, (kind, meaning) in reversed(named.items()):  # read before the clearance, which makes one of all
+        kind |= {"is_eager": True, "expose_value": False, "callback": _remember}
+        command = click.option(f"--{name}", help=meaning, **kind)(command)
+    return command  # type: ignore[no-any-return]
+
+
+def show_columns(path: Path, terminal: Terminal) -> None:
+    """A table of what a measured file holds, a row for each column, with its unit, or what it is if it is none."""
+    from frbcli.results.measured.reading import read_columns
+
+    listed = read_columns(path).listed()
+    rows = [(row["name"], " x ".join(map(str, row["shape"])), row["unit"] or "-", row["kind"]) for row in listed]
+    terminal.table(str(path), ("name", "shape", "unit", "kind"), rows)
+    terminal.emit({"command": "waterfall", "run": path, "columns": listed})
+
+
+def _remember(context: click.Context, option: click.Parameter, value: Any) -> None:
+    context.meta.setdefault(_GIVEN, {})[option.name] = value
+
+
+def _measurement(context: click.Context, _: click.Parameter, clearance: float | None) -> Measurement | None:
+    from frbcli.analysis.measured import Measurement
+
+    given = context.meta[_GIVEN]
+    if given["x"] is None:
+        return None
+    for names in EITHER:
+        several = [f"--{name.replace('_', '-')}" for name in names if given[name] is not None]
+        if len(several) > 1:
+            raise click.UsageError(f"{' and '.join(several)} state the same quantity: give one of them.")
+    return Measurement(
+        x=given["x"],
+        clearance=clearance,
+        y=given["y"],
+        time=given["time"],
+        rate=given["rate"],
+        speed=given["speed_column"],
+        speed_Hz=given["speed_at"],
+        tacho=given["tacho"],
+        pulses=given["pulses"],
+        unit_m=given["unit"],
+        time_unit_s=given["time_unit"],
+        speed_unit_Hz=given["speed_unit"],
+        speed_time=given["speed_time"],
+        slow_roll_Hz=given["slow_roll"],
+    )
+
+
+def run_of(path: Path, measurement: Measurement | None, terminal: Terminal, relative: bool = True) -> Run:
+    """The run in a file: a computed one, or a measurement, whose units are remarked. relative: whether amplitudes refer
+    to a clearance. Raises as read_run and measured_run do."""
+    from frbcli.results.measured.reading import READERS, read_columns
+
+    if not path.exists() and path.suffix.lower() in READERS:
+        read_columns(path)  # which raises: a file that is not there is said before its options are
+    if path.suffix.lower() in READERS:
+        if measurement is None:
+            columns = f"`frb waterfall {path} --columns` lists its columns."
+            raise click.UsageError(f"{path} is a measurement: name the column of its motion by --x COLUMN. {columns}")
+        if measurement.clearance is None and relative:
+            words = "A measurement needs --clearance, to which amplitudes refer; frb waterfall --linear does without."
+            raise click.UsageError(words)
+        from frbcli.analysis.measured import measured_run
+
+        run = measured_run(path, measurement)
+        for remark in run.remarks:
+            terminal.remark(remark)
+        return run
+    if measurement is not None:
+        raise click.UsageError(f"{path} is a run, which needs no --x.")
+    from frbcli.results.store import read_run
+
+    return read_run(path)
+
 
 EXPLANATION = (
     "error: standard error; what lies at a bound has none. The errors are of the measurement's scatter: what the case "
@@ -53,8 +190,8 @@ def command(
 ) -> None:
     """Find numbers of CASE with which its run-up agrees with a measured one: synchronous amplitudes, frequency and
     amplitude of the whirl, its onset."""
-    from frbcli.case.reading.listing import values as listed
-    from frbcli.results.files.write import NEW
+    from frbcli.case.reading.shipped import values as listed
+    from frbcli.results.write import NEW
     from frbcli.studies.fit import fit
     from frbcli.units import display as with_unit
 
@@ -72,7 +209,7 @@ def command(
         fitted = fit(case, measured, vary, limits, signal, watch)
     _show(terminal, fitted)
     if save is not None:
-        from frbcli.results.files.write import write
+        from frbcli.results.write import write
 
         write(save, NEW, fitted.case.source_text, forced())
         terminal.result(f"case: {save}")
@@ -100,7 +237,7 @@ def _show(terminal: Terminal, fitted: Fit) -> None:
 
 def _bounds(case: Case, given: tuple[KeyRange, ...]) -> dict[str, tuple[float, float]]:
     """Bounds by keys, in SI: each is read as a value of the case."""
-    from frbcli.case.reading.listing import values
+    from frbcli.case.reading.shipped import values
 
     bounds_of = {}
     for span in given:

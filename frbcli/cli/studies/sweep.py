@@ -13,8 +13,7 @@ import click
 from frbcli.cli.common import Terminal, output_options
 from frbcli.cli.files import INPUT, OUTPUT_FOLDER, check_outputs, force_option, forced, here
 from frbcli.cli.options import SPEED_OPTION, Command, complete_case, gathered, look_options
-from frbcli.cli.outputs import draw, picture_switch
-from frbcli.cli.progress import Display, display
+from frbcli.cli.progress import Display, display, draw, picture_switch
 from frbcli.cli.runs.transient import ENDED_EARLY, EXIT_CODES
 from frbcli.errors import input_error
 from frbcli.results.records import WHOLE
@@ -165,7 +164,7 @@ def _scattered(settings: Sequence[str]) -> tuple[list[str], list[Distribution]]:
 def _check_places(table: Path, picture: Path | None) -> None:
     """Raises InputError if the results of a sweep cannot be written into a directory that is there already."""
     if table.parent.is_dir():  # else it is made, or that is refused
-        from frbcli.results.files.write import TABLES
+        from frbcli.results.write import TABLES
 
         check_outputs((table, TABLES[table.suffix[1:]]), picture=picture)
 

@@ -14,7 +14,7 @@ from frbcli.arrays import Array, Complex
 from frbcli.compiled import compiled
 from frbcli.cycles.method.balance import loads_along, motion_along
 from frbcli.cycles.method.machine import Loads, Machine, film_loads
-from frbcli.film.kinds.samples import drag_factor
+from frbcli.film.kinds.contract import drag_factor
 from frbcli.film.mean_outflow import MeanEndFlow, mean_end_flows
 from frbcli.film.rectangles.end_flow import EndFlow, end_flow
 

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.film.gap import LARGEST_ECCENTRICITY
-from frbcli.film.kinds.samples import BY_D, BY_OMEGA, BY_V, FORCE, at_viscosity, drag_factor, film_samples
+from frbcli.film.kinds.contract import BY_D, BY_OMEGA, BY_V, FORCE, at_viscosity, drag_factor, film_samples
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.film.roughness.asperities import Asperities
 from frbcli.film.roughness.contact import BY_SLIP, BY_V_X, BY_X, F_X, F_Y, ON_JOURNAL, ON_SHELL, VALUE, rub_slopes

@@ -12,12 +12,9 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
-from frbcli.compilation import working_time
+from frbcli.compiled import working_time
 from frbcli.cycles.branch import AT_REST, LEFT
-from frbcli.cycles.diagram import SAME, CycleCount, Observer, special_cycles, with_error
-from frbcli.cycles.method.continuation import Unreachable
-from frbcli.cycles.method.follower import FLIP, HOPF, TORUS
-from frbcli.cycles.result import (
+from frbcli.cycles.columns import (
     SPEED,
     SUBCRITICAL,
     SUPERCRITICAL,
@@ -31,11 +28,19 @@ from frbcli.cycles.result import (
     UnbalancedWhirl,
     hertz,
 )
-from frbcli.cycles.shooting.branch import follow_shots, synchronous_shots
-from frbcli.cycles.shooting.other_cells import OtherCells, other_cells, shot_errors, threshold_errors
+from frbcli.cycles.diagram import SAME, CycleCount, Observer, special_cycles, with_error
+from frbcli.cycles.method.continuation import Unreachable
+from frbcli.cycles.method.follower import FLIP, HOPF, TORUS
+from frbcli.cycles.shooting.branch import (
+    OtherCells,
+    follow_shots,
+    other_cells,
+    shot_errors,
+    synchronous_shots,
+    threshold_errors,
+)
 from frbcli.cycles.shooting.period_map import SAMPLES, STEPS_PER_REVOLUTION, PeriodMap, Wet, period_map
-from frbcli.cycles.shooting.rest import RestThreshold, resting, thresholds
-from frbcli.cycles.shooting.shots import Rest, Shooting, Shot, largest
+from frbcli.cycles.shooting.shots import Rest, RestThreshold, Shooting, Shot, largest, resting, thresholds
 from frbcli.cycles.unbalance import FREE, WHIRLS, locked_lines, nearly_half, spaced
 from frbcli.errors import NotConverged
 

@@ -35,6 +35,7 @@ from frbcli.solve.state import (
     FINISHED,
     GRID,
     HISTORY,
+    METHODS,
     NUMBERS,
     RUN_END,
     RUNNING,
@@ -42,9 +43,9 @@ from frbcli.solve.state import (
     STEP_DONE,
     Control,
     State,
+    Tableau,
     make_output,
 )
-from frbcli.solve.tableau import METHODS, Tableau
 from frbcli.solve.time_loop import advance
 
 STEPS_PER_REVOLUTION = 100

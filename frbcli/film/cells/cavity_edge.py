@@ -23,8 +23,7 @@ from frbcli.compiled import Indices
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balance.states import CARRIED_GAS, PRESSURE, PRESSURE_SLOPE, SOURCE, SOURCE_SLOPE
 from frbcli.film.cells.data import Records
-from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.film import Motion, VolumeFilm
 from frbcli.film.gap import gap_rate
 
 NUDGE = 1e-6  # of the gap, and of the pace, for derivatives of smooth functions

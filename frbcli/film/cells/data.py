@@ -16,8 +16,8 @@ from frbcli.film.cells.balance.boundaries import end_slopes, supply_line, supply
 from frbcli.film.cells.balance.plain_diffusion import NO_DISTANCE, diffusing, end_reaches
 from frbcli.film.cells.block_cyclic import ring_solver
 from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.mesh.bores import bathed
 from frbcli.film.cells.mesh.grid import VolumeGrid, force_weights
-from frbcli.film.cells.mesh.openings import bathed
 from frbcli.film.gap import Section, gap_height
 
 Records = NDArray[np.record]

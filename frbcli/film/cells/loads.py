@@ -10,8 +10,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.film.cavitation.law import FRONTS
-from frbcli.film.cells.film import VolumeFilm, VolumeSolution
-from frbcli.film.cells.motion import Motion, gap_on
+from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution, gap_on
 from frbcli.film.parabola import summit
 from frbcli.film.roughness.flow_factors import shear_stress
 

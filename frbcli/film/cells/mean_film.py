@@ -9,9 +9,8 @@ from scipy.interpolate import CubicSpline
 from scipy.linalg import solve_circulant
 
 from frbcli.arrays import Array
-from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.film import Motion, VolumeFilm
 from frbcli.film.cells.mesh.grid import force_weights
-from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.mean_fields import FIELDS, MeanFilm
 from frbcli.film.rectangles.table import DEPTH_STEP, eccentricity_axis

@@ -45,10 +45,9 @@ from frbcli.film.cells.balance.states import (
 from frbcli.film.cells.block_cyclic import CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.cavity_edge import GapRise, full_cells, gap_rise, set_edges
 from frbcli.film.cells.data import SIDES, VolumeFilms, volume_films
-from frbcli.film.cells.film import Flows, VolumeFilm, VolumeSolution
+from frbcli.film.cells.film import Flows, Motion, Storage, VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.balance import FreeGas, GasMixing, KeptGas, free_gas
 from frbcli.film.cells.gas.carry import FACTOR, GAS_PAST, HEIGHT, PATHS, carry_gas, follow_oil, replace_oil
-from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.tilted.motion import seen_by_grid
 from frbcli.film.gap import gap_rate
 

@@ -35,13 +35,11 @@ from frbcli.film.cells.data import (
     VolumeFilms,
     W,
 )
-from frbcli.film.cells.film import VolumeFilm, VolumeSolution, refilled, supplied, unknown_with_fraction
+from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution, refilled, supplied, unknown_with_fraction
 from frbcli.film.cells.gas.balance import Carried, with_own_gas
-from frbcli.film.cells.linearised import linear_film, lying
+from frbcli.film.cells.linearised import film_at, linear_film, lying, steady_force, steady_solution
 from frbcli.film.cells.loads import CavitationFactor, force, loads, shear_weights
 from frbcli.film.cells.mesh.grid import run_grid
-from frbcli.film.cells.motion import Motion
-from frbcli.film.cells.steady_force import film_at, steady_force, steady_solution
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import FINER
 from frbcli.film.kinds.contract import Compared, Films, LinearOf
@@ -50,7 +48,7 @@ from frbcli.film.mean_outflow import MeanEndFlow, mean_end_flow
 from frbcli.film.rectangles.end_flow import EndFlow
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.rectangles.film_force import FilmData
-from frbcli.film.roughness.rough_gap import stress_factor
+from frbcli.film.roughness.contact import stress_factor
 from frbcli.film.section_faults import is_unfed
 
 SAME, HALVES = 1e-9, 40  # oil fractions that differ by less; by so many halves of an interval unknowns are found

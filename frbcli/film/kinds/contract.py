@@ -6,6 +6,11 @@ that see four coordinates have the tilts about x and y behind the displacement, 
 
 Steady finite-volume films have pressure and flow as bearing sheets ask for them, whether or not their gaps are even
 along the axis.
+
+Films whose force follows from the motion alone: closed forms, tables, chains between axial grooves, and solutions
+that were tabulated before.
+
+The force of one film at many moments of a motion, compiled.
 """
 
 from __future__ import annotations
@@ -13,27 +18,31 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, ClassVar, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.film.cells.balance.balances import FLOWS
 from frbcli.film.cells.balance.side_flow import outflow
 from frbcli.film.cells.data import WET
-from frbcli.film.cells.film import VolumeFilm, VolumeSolution
-from frbcli.film.cells.linearised import LinearFilm
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution
+from frbcli.film.cells.linearised import LinearFilm, film_at
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.steady_force import film_at
 from frbcli.film.gap import Section
-from frbcli.film.grid import SAMPLES
+from frbcli.film.grid import FINER, SAMPLES, Mesh
+from frbcli.film.mean_fields import MeanFilm
 from frbcli.film.mean_outflow import MeanEndFlow
-from frbcli.film.rectangles.end_flow import EndFlow
-from frbcli.film.rectangles.film import FilmForce
-from frbcli.film.rectangles.film_force import FilmData
+from frbcli.film.penalty_table.film import SourceFilm
+from frbcli.film.penalty_table.table import PenaltyTableFilm, with_half_the_nodes
+from frbcli.film.rectangles.end_flow import EndFlow, end_flow, make_end_flow
+from frbcli.film.rectangles.film import FilmForce, direct_force, evaluate, make_film
+from frbcli.film.rectangles.film_force import FilmData, film_force
+from frbcli.film.rectangles.short import ShortFilm
 
 Part = tuple[VolumeFilm, Motion]
 
@@ -320,3 +329,158 @@ class NoFilms(Films):
     ) -> tuple[float, float]:
         """Raises IndexError: there is no film."""
         raise IndexError(i)
+
+
+@dataclass(frozen=True)
+class TableFilms(Films):
+    """data: of each film; sections: over the whole width, see whole_width of gap.py; scales: None, or by what the
+    velocities of each film have to be multiplied for its table, see Films.scaled; shares: None, or of their gauge
+    supply pressures, see Films.supplied: r F(w / r) is the force with r times these."""
+
+    data: tuple[FilmData, ...]
+    sections: tuple[Section, ...]
+    scales: tuple[float, ...] | None = field(default=None, kw_only=True)
+    shares: tuple[float, ...] | None = field(default=None, kw_only=True)
+
+    @property
+    def loop(self) -> Any:
+        """The films as the time loop takes them."""
+        return self.data
+
+    def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
+        if self.scales is None:
+            return evaluate(self.data[i], self.clearances[i], place, rate, total)
+        s = self.scales[i]
+        force = evaluate(self.data[i], self.clearances[i], place, s * np.asarray(rate), s * total)
+        r = 1.0 if self.shares is None else self.shares[i]
+        return FilmForce(r * force.force, r * force.by_displacement, r * s * force.by_velocity)
+
+    @cached_property
+    def end_flows(self) -> tuple[EndFlow, ...]:
+        return tuple(make_end_flow(section, film) for section, film in zip(self.sections, self.data, strict=True))
+
+    def heat_ends(self) -> Any:
+        return self.end_flows
+
+    def power_and_flow(
+        self, i: int, place: Array, total: float, slip: float, drag: float, near: FilmForce | None = None
+    ) -> tuple[float, float]:
+        d, c = place / self.clearances[i], self.clearances[i]
+        power = couette_power(place, c, self.force(i, place, np.zeros(2), total).force, total, slip, drag)
+        scale = 1.0 if self.scales is None else self.scales[i]
+        w = 0.5 * total * np.array([d[1], -d[0]])
+        leaving = end_flow(self.end_flows[i], float(d[0]), float(d[1]), float(w[0]), float(w[1]), scale)
+        return power, c * leaving
+
+    def scaled(self, scales: Array, clearances: Array) -> Self | None:
+        return replace(self, clearances=tuple(clearances.tolist()), scales=tuple(scales.tolist()))
+
+    def supplied(self, shares: Array) -> Self:
+        scales = np.ones(self.count) if self.scales is None else np.asarray(self.scales)
+        return replace(self, scales=tuple((scales / shares).tolist()), shares=tuple(shares.tolist()))
+
+    def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
+        return self.data
+
+
+@dataclass(frozen=True)
+class RectangleFilms(TableFilms):
+    """Gaps made of rectangles. laws: of the films; theory: "short" | "finite"; mesh: the finest of the films'."""
+
+    laws: tuple[str, ...]
+    theory: str
+    mesh: Mesh
+
+    def compared(self) -> Compared:
+        """See Films.compared: against the film of finite length, of the short bearing the error of the theory."""
+        finer = Mesh(FINER * self.mesh.axial, FINER * self.mesh.circumferential)
+        # Films between axial grooves have no table: the same film on the finer mesh is the reference.
+        fine = [
+            make_film(section, self.theory, law, finer) if section.grooves else None
+            for section, law in zip(self.sections, self.laws, strict=True)
+        ]
+
+        def forces(i: int, place: Array, rate: Array, total: float) -> tuple[Array, Array]:
+            section, better = self.sections[i], fine[i]
+            if better is None:
+                exact = direct_force(section, self.laws[i], finer, place, rate, total)
+            else:
+                exact = evaluate(better, section.clearance, place, rate, total).force
+            return exact, self.force(i, place, rate, total).force
+
+        return forces
+
+
+@dataclass(frozen=True)
+class SolutionFilms(TableFilms):
+    """Films tabulated from solutions on cells. solved: what the tables are made of; mesh: cells."""
+
+    solved: tuple[SourceFilm, ...]
+    mesh: Mesh
+
+    def with_half_the_nodes(self) -> Self:
+        tables = (film for film in self.data if isinstance(film, PenaltyTableFilm))
+        return replace(self, data=tuple(film._replace(table=with_half_the_nodes(film.table)) for film in tables))
+
+    def compared(self) -> Compared:
+        finer = Mesh(FINER * self.mesh.axial, FINER * self.mesh.circumferential)
+        fine = [replace(film, mesh=finer) for film in self.solved]
+
+        def forces(i: int, place: Array, rate: Array, total: float) -> tuple[Array, Array]:
+            return fine[i].force(place, rate, total), self.force(i, place, rate, total).force
+
+        return forces
+
+
+# Columns of film_samples: force (x, y), derivatives by d (xx, xy, yx, yy), by v (xx, xy, yx, yy), by omega (x, y).
+FORCE, BY_D, BY_V, BY_OMEGA, COLUMNS = 0, 2, 6, 10, 12
+DIFFERENCE = 1e-6  # relative, of the speed, for films whose force depends on it by more than the motion of the gap
+
+
+def film_samples(film: FilmData, d: Array, v: Array, omega: Array) -> Array:
+    """(n, COLUMNS) N, N and N s: force on the journal by one bearing and its derivatives at n moments.
+
+    d: (n, 2) displacement over the clearance; v: (n, 2) its rate in 1/s; omega: (n,) omega_J + omega_S in rad/s.
+    """
+    rows = np.empty((len(d), COLUMNS))
+    _sample(film, d, v, omega, rows)
+    if isinstance(film, PenaltyTableFilm | MeanFilm):
+        step = DIFFERENCE * np.maximum(np.abs(omega), 1.0)
+        ahead, behind = np.empty_like(rows), np.empty_like(rows)
+        _sample(film, d, v, omega + step, ahead)
+        _sample(film, d, v, omega - step, behind)
+        rows[:, BY_OMEGA:] = (ahead[:, :2] - behind[:, :2]) / (2.0 * step[:, None])
+    return rows
+
+
+def at_viscosity(film: FilmData, scale: float) -> FilmData:
+    """The film of so many times the viscosity, as one that is asked for its force at so many times the velocities:
+    pressures at openings that turn fall with the speed as it is."""
+    return film._replace(drop=film.drop / scale**2) if isinstance(film, MeanFilm) else film
+
+
+def have_closed_forms(films: Sequence[FilmData]) -> bool:
+    """Whether the force of every film is a formula, without lines of a table or of a mesh."""
+    return all(isinstance(film, ShortFilm) for film in films)
+
+
+@compiled()
+def _sample(film: Any, d: Array, v: Array, omega: Array, rows: Array) -> None:
+    """The rows of film_samples; by omega as far as it moves the gap, through w = v - (omega/2) J d (4.5)."""
+    for i in range(d.shape[0]):
+        f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = film_force(
+            film, d[i, 0], d[i, 1], v[i, 0], v[i, 1], omega[i]
+        )
+        rows[i, 0], rows[i, 1] = f_x, f_y
+        rows[i, 2], rows[i, 3], rows[i, 4], rows[i, 5] = k_xx, k_xy, k_yx, k_yy
+        rows[i, 6], rows[i, 7], rows[i, 8], rows[i, 9] = d_xx, d_xy, d_yx, d_yy
+        rows[i, 10] = 0.5 * (d_xx * d[i, 1] - d_xy * d[i, 0])
+        rows[i, 11] = 0.5 * (d_yx * d[i, 1] - d_yy * d[i, 0])
+
+
+def drag_factor(d: Array) -> tuple[Array, Array]:
+    """Sommerfeld's integral of 1 / H over the turn at displacements (n, 2) over the clearance: (n,), and its gradient
+    (n, 2)."""
+    square = np.maximum(1.0 - np.sum(d**2, axis=1), 1e-6)
+    factor = 2.0 * math.pi / np.sqrt(square)
+    return factor, factor[:, None] * d / square[:, None]

@@ -20,9 +20,9 @@ from frbcli.film.cells.balance.balances import FLOWS
 from frbcli.film.cells.balance.side_flow import outflow
 from frbcli.film.cells.data import SHEARED
 from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.linearised import film_at
 from frbcli.film.cells.loads import loads
-from frbcli.film.cells.steady_force import film_at
-from frbcli.film.cells.tilted.data import TiltedVolumes, tilted_volumes
+from frbcli.film.cells.tilted.kernel import TiltedVolumes, tilted_volumes
 from frbcli.film.cells.tilted.steady_force import (
     COORDINATES,
     TiltedFilm,

@@ -12,13 +12,12 @@ from frbcli.errors import NotConverged
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cells.balance.plain import CellBalances
+from frbcli.film.cells.film import Motion, Storage
 from frbcli.film.cells.mesh.grid import VolumeGrid, axial_weights, fitted_grid
-from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.gap import Section, gap_rate
 from frbcli.film.grid import Mesh
 from frbcli.film.kept import kept_beside
-from frbcli.film.penalty_table.rows import LIMIT, row_forces
-from frbcli.film.penalty_table.table import PenaltyTableFilm, slow_speed, source_table, table_numbers
+from frbcli.film.penalty_table.table import LIMIT, PenaltyTableFilm, row_forces, slow_speed, source_table, table_numbers
 from frbcli.film.rectangles.film_force import FilmData
 
 CENTRED = 1e-6  # eccentricity that counts as the centre

@@ -16,8 +16,7 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.grid import CHAIN_MODES, NO_SEALS, Mesh, axial_modes, axial_vertices
-from frbcli.film.rectangles.clip import cut_element
-from frbcli.film.rectangles.modal import GAUSS_POINTS, GAUSS_WEIGHTS, SHAPE, SLOPE
+from frbcli.film.rectangles.modal import GAUSS_POINTS, GAUSS_WEIGHTS, SHAPE, SLOPE, cut_element
 from frbcli.film.rectangles.table import half_width_lines
 
 LINES = 6  # Gauss points over half the width

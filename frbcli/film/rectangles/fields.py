@@ -16,8 +16,7 @@ from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.grid import NO_SEALS, Mesh, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.parabola import hermite
-from frbcli.film.rectangles.clip import cut_element, force_weights
-from frbcli.film.rectangles.modal import element_lengths, unit_fields
+from frbcli.film.rectangles.modal import cut_element, element_lengths, force_weights, unit_fields
 from frbcli.film.rectangles.short import sealed_shape
 from frbcli.film.rectangles.table import DEPTH_STEP, axial_lines, eccentricity_axis
 

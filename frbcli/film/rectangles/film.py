@@ -17,10 +17,9 @@ from frbcli.film.grid import Mesh, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.kept import kept_beside
 from frbcli.film.parabola import summit
 from frbcli.film.rectangles.chain import ChainFilm, chain_grid, chain_table
-from frbcli.film.rectangles.clip import clipped_line, force_weights
 from frbcli.film.rectangles.fields import LINES, FieldsFilm, field_grid, field_table
 from frbcli.film.rectangles.film_force import FilmData, film_force
-from frbcli.film.rectangles.modal import element_lengths, unit_fields
+from frbcli.film.rectangles.modal import clipped_line, element_lengths, force_weights, unit_fields
 from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm, sealed_shape, sealed_share
 from frbcli.film.rectangles.table import TableFilm, force_table, ring_contraction, table_force
 

@@ -18,8 +18,7 @@ from frbcli.compiled import compiled
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.grid import NO_SEALS, Mesh, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.parabola import Slopes, Values, hermite
-from frbcli.film.rectangles.clip import clipped_line, force_weights
-from frbcli.film.rectangles.modal import element_lengths, unit_fields
+from frbcli.film.rectangles.modal import clipped_line, element_lengths, force_weights, unit_fields
 
 DEPTH_STEP = 0.1  # step of x = -ln(1 - eps): forces grow at most like exp(2.5 x), interpolated to 1e-5
 DIRECTIONS = 33  # of w, over half a turn; the other half is its mirror image

@@ -12,13 +12,12 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.columns import Table, Tabular, table_of
-from frbcli.elements.rolling.ball import BallBearingElement
-from frbcli.elements.rolling.rest import RestingRings, rating_life, under_load
+from frbcli.elements.ball import BallBearingElement, RestingRings, rating_life, under_load
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.linear.columns import BALL_SHEET
-from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import FILMS
+from frbcli.scene.gate.static import require
 
 Observer = Callable[[int, int], None]
 SPEEDS = 10

@@ -11,15 +11,14 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.case.oil import USUAL_TEMPERATURE
 from frbcli.case.schema import Case
-from frbcli.equilibrium.coefficients import LEAST, RestingFilm, TiltingFilm, force_error, settled_force
+from frbcli.equilibrium.linearised import LEAST, RestingFilm, TiltingFilm, force_error, settled_force
 from frbcli.equilibrium.static_films import FieldFilms, StaticFilms
 from frbcli.errors import NotConverged
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.loads import CavitationFactor, loads
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.gap import gap_height
+from frbcli.film.gap import friction_coefficient, gap_height, sommerfeld_number
 from frbcli.film.kinds.contract import FieldFilm
-from frbcli.film.operating import friction_coefficient, sommerfeld_number
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.roughness.asperities import rub
 from frbcli.scene.machine.system import System

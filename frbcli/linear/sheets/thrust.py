@@ -16,9 +16,8 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.elements import ThrustBearing
-from frbcli.case.oil import Oil
+from frbcli.case.oil import Oil, Thermal
 from frbcli.case.schema import Case
-from frbcli.case.thermal import Thermal
 from frbcli.columns import Table, Tabular, table_of
 from frbcli.elements.collar import BOTH, Collar, NotCarried, collar_at_rest, collar_of, collar_under, pad_of
 from frbcli.errors import input_error
@@ -26,11 +25,12 @@ from frbcli.film.pad_geometry import COARSE, MESH, Pad
 from frbcli.film.pads import PadFilm, PadMesh, PadOil, pad_film, pad_mesh, ring_of_pads
 from frbcli.linear.columns import THRUST
 from frbcli.linear.sheets.thrust_faults import no_gap, require_sheet
-from frbcli.scene.shafts.table import shaft_of
+from frbcli.scene.machine.turbocharger import shaft_of
 from frbcli.units import display
 
 if TYPE_CHECKING:
     from frbcli.elements.collar import PadHeat
+
 
 COEFFICIENTS = "stiffness", "damping"
 OilAt = tuple[PadOil, float | None]  # of a film, and its temperature in K

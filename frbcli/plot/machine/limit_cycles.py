@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from scipy.interpolate import PchipInterpolator
 
 from frbcli.arrays import Array, Truths
-from frbcli.cycles.result import SPEED, CycleBranch, CyclePoint, LimitCycles, SpecialPoint
+from frbcli.cycles.columns import SPEED, CycleBranch, CyclePoint, LimitCycles, SpecialPoint
 from frbcli.plot.curves import RunTrack
 from frbcli.plot.style import (
     BAND,

@@ -16,8 +16,7 @@ from frbcli.linear.critical_speeds import BACKWARD, FORWARD
 from frbcli.linear.damped_modes import DampedMode, DampedModes
 from frbcli.linear.modes import SHOWN, Mode, Modes
 from frbcli.linear.stability import Stability
-from frbcli.linear.stability_point import StabilityPoint
-from frbcli.linear.threshold import Threshold
+from frbcli.linear.stability_point import StabilityPoint, Threshold
 from frbcli.plot.style import BAND, BLACK, BLUE, GREEN, GREY, ORANGE, VERMILION, new_figure, styled
 from frbcli.rotor.loads import first_largest
 from frbcli.units import SpeedUnit, display

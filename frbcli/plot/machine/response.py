@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.analysis.orders.order_tracking import OrderTrack
+from frbcli.analysis.order_tracking import OrderTrack
 from frbcli.arrays import Array
 from frbcli.linear.critical_map import CriticalMap
 from frbcli.linear.critical_speeds import larger_semi_axis

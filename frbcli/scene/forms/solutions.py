@@ -15,7 +15,7 @@ from frbcli.scene.forms.form import BLOCKS, FilmForm, SolveCounts
 from frbcli.scene.gate.rule import RUN, Rule, oil_flow_signal, refusal
 
 if TYPE_CHECKING:
-    from frbcli.scene.planning.planned import Plan
+    from frbcli.scene.planning.film_choice import Plan
 
 SOLUTION_MESH = Mesh(axial=6, circumferential=48)  # cells
 # 90 % of the forces up to an eccentricity of 0.95 have a smaller error, from interpolation and cells together.

@@ -1,27 +1,55 @@
-"""Rules of films: supplies, openings and ends, whatever is asked of them; and rough surfaces."""
+"""Rules of films: supplies, openings and ends, whatever is asked of them; and rough surfaces.
+
+Rules of runs: theory, solution and grid of the films, speeds, and the number of bearings.
+
+Rules of squeeze film dampers and magnetic pulls.
+
+The films of dampers carry by squeezing alone: at rest they carry nothing. Pulls are limited by what holds the rotor.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
+import numpy as np
+
+from frbcli.arrays import Array
 from frbcli.case.film import FilmGeometry
+from frbcli.case.model import altered
+from frbcli.case.over_time import OverTime
+from frbcli.case.reading.time_tables import WALLS
 from frbcli.case.schema import Case
+from frbcli.case.surroundings import Damper
+from frbcli.elements.forces import MagneticPullElement
+from frbcli.elements.supports import DamperElement
 from frbcli.errors import Fault
 from frbcli.film.cavitation.barotropic import Barotropic
 from frbcli.film.cavitation.law import FilmOil
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import NO_BATH, ends_at_ambient
 from frbcli.film.section_faults import runs_dry, section_faults
-from frbcli.scene.channels import coupling_faults
-from frbcli.scene.coupling import coupling_of
-from frbcli.scene.films import HOUSING, FilmPlace, film_places, film_section, is_published
-from frbcli.scene.forms.cells import CELLS
-from frbcli.scene.forms.tables import CLIPPED
-from frbcli.scene.forms.tilted import INCLINED, TILTED
+from frbcli.rotor.assembly import LinearRotor
+from frbcli.scene.course import coupling_of
+from frbcli.scene.films import (
+    HOUSING,
+    FilmPlace,
+    coupling_faults,
+    film_places,
+    film_section,
+    is_plain,
+    is_published,
+    misaligned,
+    tilt_key,
+    tilts,
+)
+from frbcli.scene.forms.form import CLIPPED
+from frbcli.scene.forms.solutions import solution_fault
+from frbcli.scene.forms.tilted import CELLS, INCLINED, TILTED
+from frbcli.scene.gate.rule import run_omega
 from frbcli.scene.keys import film_keys
-from frbcli.scene.planning.film_choice import film_form, form_of
-from frbcli.scene.tilt import misaligned, tilt_key, tilts
+from frbcli.scene.machine.rotor import make_rotor
+from frbcli.scene.planning.film_choice import all_clipped, film_form, form_of
 from frbcli.units import display
 
 SMOOTH = 'Write contact.model = "spring"'
@@ -250,3 +278,211 @@ def rough_heat_faults(case: Case) -> Iterator[Fault]:
     if case.contact.rough and case.heat is not None:
         problem = "makes heat by friction, and in cycles and tests the films alone make heat."
         yield Fault("contact.model", "asperities", None, problem, f'{SMOOTH}, or thermal.model = "none".')
+
+
+def theory_faults(case: Case) -> Iterator[Fault]:
+    """The short bearing is for half-Sommerfeld films on rectangles."""
+    if case.film.theory != "short":
+        return
+    if not form_of(case).any_theory:
+        remedy = "finite or auto for this cavitation model and supply; short is for half-sommerfeld on rectangles"
+        yield _missing("film.theory", "short", remedy)
+    elif any(place.geometry.supply.divides for place in film_places(case)):
+        yield _missing("film.theory", "short", "finite or auto for a bearing with axial grooves")
+
+
+def form_faults(case: Case) -> Iterator[Fault]:
+    """Solution and grid of films of the program."""
+    form = form_of(case)
+    if not form.solved:
+        return
+    cells = form.by_cells
+    chained = any(place.geometry.supply.divides for place in film_places(case))
+    if (fault := solution_fault(case, all_clipped(case), not (chained or cells))) is not None:
+        yield fault
+    may_turn = cells and all(is_plain(place.geometry) for place in film_places(case))
+    if case.film.grid == "half-speed" and not may_turn:
+        yield _missing("film.grid", "half-speed", "auto; it is for finite-volume films without openings and lobes")
+
+
+def changing_supply_faults(case: Case) -> Iterator[Fault]:
+    """The films of a run follow the pressure of their supply over time: all pressures of a table by one factor."""
+    form, oil = form_of(case), case.oil
+    for key, place in zip(film_keys(case), film_places(case), strict=True):
+        film, remedy = place.geometry, "Give one pressure."
+        if film.supply.over_time is None:
+            continue
+        if not form.follows_supply:
+            problem = f"changes over time, which a {form} does not follow."
+        elif any(each.clearance_steps for each in case.films):
+            problem = "changes over time, and bearing.clearance_steps make films of a pressure that stays."
+        elif form.by_cells or oil.cavitation_pressure == oil.ambient_pressure:
+            continue
+        else:
+            problem = "changes over time, and not in proportion to oil.cavitation_pressure, which a table has, too."
+            remedy = 'Write film.solution = "cells", or oil.cavitation_pressure as oil.ambient_pressure.'
+        yield Fault(f"{key}.supply.pressure", "over time", None, problem, remedy)
+
+
+def kept_film_faults(case: Case) -> Iterator[Fault]:
+    """The films that a run keeps are those whose cells have an oil fraction as their state."""
+    form, kept = form_of(case), case.output.films
+    if kept is None:
+        return
+    if form is not CELLS:
+        problem = f"asks for the oil of cells, and the films are: {form}."
+    elif coupling_of(case).in_turn:
+        problem = "asks for the films of single steps, and a co-simulation does not have them."
+    elif not all(law_named(name).keeps_oil for name in case.cavitations):
+        problem = "asks for the oil of the films, and their model does not keep any."
+    else:
+        return
+    remedy = 'Leave it out, or write film.cavitation = "two-phase", with film.coupling = "auto" and film.tilt = "none".'
+    yield Fault("output.films", f"{kept.frames} frames", None, problem, remedy)
+
+
+def axial_faults(case: Case) -> Iterator[Fault]:
+    """A collar does not lie on its pads at the speeds of a case."""
+    if not case.loads_a_collar:
+        return
+    from frbcli.elements.collar import uncarried_faults  # films on pads take a second to import
+
+    yield from uncarried_faults(case)
+
+
+def axial_heat_faults(case: Case) -> Iterator[Fault]:
+    """The films of a collar are as warm as at rest at the speed of the moment, with temperatures that stay."""
+    if not case.loads_a_collar or case.heat is None:
+        return
+    walls = {wall: getattr(case.heat, wall) for wall in WALLS}
+    given = {"supply_temperature": case.heat.supply_temperature}
+    given |= {wall: getattr(value, "temperature", value) for wall, value in walls.items()}
+    for key, value in given.items():
+        if isinstance(value, OverTime):
+            problem = "changes over time, which the temperatures of the films on the pads do not follow."
+            remedy = "Give one temperature, or leave [axial] out."
+            yield Fault(f"thermal.{key}", value.origin, None, problem, remedy)
+
+
+def drive_faults(case: Case) -> Iterator[Fault]:
+    """A speed that is free is solved in the stages of the time loop; an axial load over time goes by given speeds."""
+    if case.drive is None:
+        return
+    if coupling_of(case).in_turn:
+        problem = "takes the rotor's speed as given, and [drive] leaves it free."
+        yield Fault("film.coupling", case.film.coupling, None, problem, "Write auto, or [speed] instead of [drive].")
+    if case.axial is not None and isinstance(case.axial.load, OverTime):
+        problem = "changes over time, and the collar of a rotor whose speed is free has one load for each speed."
+        yield Fault("axial.load", "", None, problem, 'Give one load, or { at = "1000 Hz", load = "40 N" }.')
+    if case.drive.reaction and case.bases:
+        problem = "acts on a rotor whose ground is at rest, and [base] moves it."
+        yield Fault("drive.reaction", "true", None, problem, "Leave one of the two out.")
+
+
+def given_speed_faults(case: Case) -> Iterator[Fault]:
+    """Limit cycles, kinematic tests and the ladder are at given speeds."""
+    if case.drive is not None:
+        problem = "leaves the speed free, and this analysis needs a given one."
+        yield Fault("drive", "", None, problem, "Write [speed] instead of [drive].")
+
+
+def speed_faults(case: Case) -> Iterable[Fault]:
+    """A run has speeds. Raises InputError for a case of kinematic tests, which has none."""
+    run_omega(case)
+    return ()
+
+
+def number_faults(case: Case) -> Iterator[Fault]:
+    """A symmetric rotor has one bearing with a film for both."""
+    if len(case.bearings) > 1 and case.rotor.symmetric:
+        both = "one bearing with a film, which represents both of a symmetric rotor, and any with given coefficients"
+        yield _missing("bearing", f"{len(case.bearings)} bearings", both)
+
+
+def _missing(key: str, value: str, known: str) -> Fault:
+    return Fault(key, value, None, "is not modelled in this version.", f"Modelled are: {known}.")
+
+
+def sheet_faults(case: Case) -> Iterator[Fault]:
+    """A sheet has the films between surfaces that turn against each other."""
+    if not case.bearings:
+        for each in DamperElement.of(case):
+            problem = "has the only films of the case, which do not turn: a film of a damper carries nothing at rest."
+            yield Fault(each.key, "", None, problem, "Add a bearing with a film.")
+
+
+def loaded_faults(case: Case) -> Iterator[Fault]:
+    """A given load acts on one film."""
+    for each in DamperElement.of(case):
+        problem = "adds a film to the bearing's, and a given load is the load of a single film."
+        yield Fault(each.key, "", None, problem, "Leave the damper out: the sheet is of the film in its shell.")
+
+
+def rest_faults(case: Case) -> Iterator[Fault]:
+    """Where nothing but a film that does not turn holds a shell, a load sinks it."""
+    for each in DamperElement.of(case):
+        if not all(each.given.spring) and _loaded(case):
+            problem = "is missing: the film does not turn and carries no static load, and the shell sinks."
+            yield Fault(f"{each.key}.spring", "", None, problem, 'Write e.g. spring = "5e6 N/m", or take a run.')
+
+
+def linear_faults(case: Case) -> Iterator[Fault]:
+    """Films that cavitate as soon as their shell moves have no damping, but in the centre."""
+    if not _loaded(case):
+        return
+    for each in DamperElement.of(case):
+        if all(each.given.spring) and not each.given.centred and cavitates_at_once(case, each.given):
+            problem = (
+                "cavitates as soon as its shell moves: off the centre, to which a static load brings it, the forces of "
+                "opposite velocities are not opposite, and no damping describes both."
+            )
+            remedy = (
+                "Take a run; or write centred = true; or raise oil.ambient_pressure, and a supply, above "
+                "oil.cavitation_pressure, take "
+                "sommerfeld, or leave the weight out, for the damper in its centre."
+            )
+            yield Fault(f"{each.key}.cavitation", case.cavitation(each.given), None, problem, remedy)
+
+
+def cavitates_at_once(case: Case, damper: Damper) -> bool:
+    """Whether some part of a film at rest has the pressure at which it cavitates."""
+    oil, supply = case.oil, damper.supply
+    pressures = [oil.ambient_pressure, *([supply.absolute(oil.ambient_pressure)] if supply.feeds else [])]
+    return law_named(case.cavitation(damper)).cavitates and min(pressures) <= oil.cavitation_pressure
+
+
+def _loaded(case: Case) -> bool:
+    pushed = any(force.constant for force in case.forces)
+    return case.given_rotor is not None and (case.rotor.gravity > 0.0 or pushed)
+
+
+NEARLY = 0.99  # of the pull at which the rotor has no stiffness: what the remedy says
+
+
+def pull_faults(case: Case) -> Iterator[Fault]:
+    """Pulls that the shaft and what else holds the rotor do not resist, also if the films were rigid."""
+    if not case.magnetic_pulls or case.given_rotor is None:
+        return
+    pulled = make_rotor(case)
+    free = make_rotor(altered(case, {"magnetic_pulls": ()}))
+    share = _share(free, free.stiffness - pulled.stiffness)
+    if share >= 1.0:
+        for each in MagneticPullElement.of(case):
+            films = ", with films that do not give way" if case.films else ""
+            problem = f"is {share:.3g} times what shaft and bearings hold{films}: the rotor is statically unstable."
+            remedy = f"Give at most {display(NEARLY * each.given.pull / share, 'N/m')}, or a stiffer rotor."
+            yield Fault(f"{each.key}.pull", display(each.given.pull, "N/m"), None, problem, remedy)
+
+
+def _share(rotor: LinearRotor, pulls: Array) -> float:
+    """All pulls (n, n) over those at which the rotor at rest has a motion without stiffness, 0 where they have none."""
+    k = rotor.at(0.0).stiffness
+    moving = k.any(axis=1) | pulls.any(axis=1)  # without the angles of rings
+    held = rotor.journals.reshape(-1, rotor.size)[:, moving]
+    _, sizes, right = np.linalg.svd(held) if len(held) else (None, np.zeros(0), np.eye(int(moving.sum())))
+    free = right[int(np.sum(sizes > 1e-9 * sizes.max(initial=0.0))) :].T
+    if not free.size:
+        return 0.0
+    k, pulls = (free.T @ each[np.ix_(moving, moving)] @ free for each in (k, pulls))
+    shares = np.linalg.eigvals(np.linalg.lstsq(k, pulls, rcond=None)[0])
+    return float(max((each.real for each in shares if abs(each.imag) < 1e-9), default=0.0))

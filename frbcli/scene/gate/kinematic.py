@@ -12,11 +12,21 @@ from frbcli.case.film import FilmGeometry
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, did_you_mean
-from frbcli.scene.channels import coupled
-from frbcli.scene.films import bearing_films, film_section
+from frbcli.scene.films import (
+    as_text,
+    bearing_films,
+    coupled,
+    film_section,
+    least_gaps,
+    misaligned,
+    places_of,
+    slope_of,
+    tilt_key,
+    tilt_of,
+    tilts,
+)
 from frbcli.scene.gate.rule import ROTATION
 from frbcli.scene.keys import bearing_key, film_keys
-from frbcli.scene.tilt import as_text, least_gaps, misaligned, places_of, slope_of, tilt_key, tilt_of, tilts
 
 OF_THE_FILM = {
     "name", "title", "confirm", "given_bearings", "given_oil", "film", "thermal", "motion", "start", "contact",

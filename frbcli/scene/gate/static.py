@@ -1,23 +1,78 @@
-"""Rules of bearing sheets, heat, stability and response: of machines at rest."""
+"""Rules of bearing sheets, heat, stability and response: of machines at rest.
+
+Rules of limit cycles, and of whirls with the unbalance.
+
+The gate: one table of rules, each with the analyses that it holds for. Every analysis asks it before a film is made.
+
+A rule is a function of a case that yields the faults: key, value, problem, remedy. What a form of films or a coupling
+is not made for is in its own row, see `rules` in scene/forms/form.py and scene/coupling.py. `docs/matrix.md` is made by
+asking this gate.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import partial
 
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.film import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.elements.pin import PinElement
-from frbcli.errors import Fault
+from frbcli.errors import Fault, InputError
 from frbcli.film.cavitation.table import law_named
-from frbcli.scene.channels import coupling_faults
-from frbcli.scene.coupling import coupling_of
-from frbcli.scene.films import HOUSING, film_places, is_plain
+from frbcli.scene.course import coupling_of, default_speeds, keeps_oil
+from frbcli.scene.films import (
+    HOUSING,
+    FilmPlace,
+    as_text,
+    channel_faults,
+    coupled_rings,
+    coupling_faults,
+    film_places,
+    is_plain,
+    tilts,
+    turning_cartridges,
+    turns_with_oil,
+)
+from frbcli.scene.forms.tilted import AT_REST, RUNS
+from frbcli.scene.gate import films, kinematic, static
+from frbcli.scene.gate.kinematic import choice_faults, key_in, tested_case
+from frbcli.scene.gate.rule import (
+    ALL,
+    BEARING,
+    CHART,
+    COMPARISON,
+    CYCLES,
+    EVERY_CYCLE,
+    FILMS,
+    HEAT,
+    KINEMATIC,
+    LADDER,
+    LOADED,
+    RANGE,
+    RUN,
+    SHEETS,
+    SPEED_CYCLES,
+    STABILITY,
+    STILL,
+    WHIRLS,
+    Faults,
+    Rule,
+)
 from frbcli.scene.keys import cavitation_keys
-from frbcli.scene.machine.rotor import port_faults
-from frbcli.scene.speeds import default_speeds, keeps_oil
-from frbcli.scene.tilt import as_text
+from frbcli.scene.machine.rotor import (
+    element_faults,
+    element_parts,
+    harmonics_of,
+    port_faults,
+    speed_dependent,
+    stray_load_faults,
+    without_bearing,
+    without_film,
+)
+from frbcli.scene.machine.turbocharger import shaft_of
+from frbcli.scene.planning.film_choice import all_clipped, form_of
 
 
 def sheet_faults(case: Case) -> Iterator[Fault]:
@@ -178,3 +233,237 @@ def range_faults(case: Case) -> Iterator[Fault]:
     if not default_speeds(case):
         remedy = 'Write e.g. speed.to = "300 Hz", or ask for a speed, "25 Hz".'
         yield Fault("speed.to", f"{case.speed.end:g} Hz", None, "leaves no speed above zero.", remedy)
+
+
+CONSTANT = "these limit cycles are computed for one rotor with constant coefficients"
+HEAT_REMEDY = 'Write thermal.model = "none", and as temperature of each film the one of frb check or frb stability.'
+
+
+def given_coefficient_faults(case: Case) -> Iterator[Fault]:
+    """Coefficients of bearings that depend on the speed are followed where films have neither heat nor oil of their
+    own."""
+    if case.heat is not None or (case.films and by_shooting(case)):
+        yield from speed_dependent(case, CONSTANT)
+
+
+def linear_faults(case: Case) -> Iterator[Fault]:
+    """A machine has a film, or another force that is not linear."""
+    if not element_parts(case).ports:
+        yield from without_film(case, "a linear machine has no limit cycles")
+
+
+def cartridge_faults(case: Case) -> Iterator[Fault]:
+    """The gyroscopic moments of a cartridge go by its tilt, which its films see where their shells are fixed."""
+    if case.housing is None or by_shooting(case):
+        return
+    for key in turning_cartridges(case):
+        problem = (
+            "turns a cartridge in a housing that moves: its films see its tilt against the housing, and its gyroscopic "
+            "moments go by its own."
+        )
+        yield Fault(f"{key}.ring.spin", "free", None, problem, "Leave the housing out, or take a run-up.")
+
+
+def cycle_heat_faults(case: Case) -> Iterator[Fault]:
+    """Cycles over the speed have temperatures that stay over a period, of films whose force follows from the motion."""
+    if case.heat is None:
+        return
+    if by_shooting(case):
+        problem = "settles over many periods, and cycles of this case are found from one period of a run."
+        yield Fault("thermal.model", "lumped", None, problem, HEAT_REMEDY)
+    for key in ("clearance", "centrifugal_growth"):
+        if getattr(case.heat, key) == "follows":
+            problem = "changes the clearances over which the motions of a branch are measured."
+            yield Fault(f"thermal.{key}", "follows", None, problem, 'Write "fixed".')
+
+
+def other_cycle_heat_faults(case: Case) -> Iterator[Fault]:
+    """Cycles over other numbers than the speed are computed at given temperatures."""
+    if case.heat is not None:
+        problem = "balances the heat of limit cycles over the speed alone."
+        yield Fault("thermal.model", "lumped", None, problem, HEAT_REMEDY)
+
+
+def turning_port_faults(case: Case) -> Iterator[Fault]:
+    """Forces that are not linear have no angle of their own: no whirl returns to it after one period."""
+    problem = "turns with the rotor: the force depends on its angle, and no whirl returns after one period."
+    yield from port_faults(case, problem, 'Write cage = "mean", or take a run.', lambda law: law.turns)
+
+
+def smooth_faults(case: Case) -> Iterator[Fault]:
+    """Films whose force does not follow smoothly from the motion alone, and other forces that are not linear."""
+    yield from port_faults(case, "is not linear.", "Go over the speed alone.")
+    named = dict(cavitation_keys(case)) if form_of(case).solved else {}
+    keeping = {key: name for key, name in named.items() if law_named(name).keeps_oil}
+    if keeping:
+        problem = "is mass-conserving: the force depends on the oil that the film keeps, not on the motion alone."
+        remedy = "Take half-sommerfeld or penalty here, and a run-up for this model."
+        yield from (Fault(key, name, None, problem, remedy) for key, name in keeping.items())
+    elif form_of(case).by_cells and not turning_openings(case):
+        problem = "is solved on cells, where the force has no continuous derivative."
+        remedy = "Go over the speed alone, or take half-sommerfeld, with grooves or feed holes that turn only."
+        yield from (Fault(key, name, None, problem, remedy) for key, name in named.items())
+
+
+def speed_cycle_faults(case: Case) -> Iterator[Fault]:
+    """Films whose map over a period is not the same at each start, since their openings turn."""
+    yield from turning_port_faults(case)
+    if not by_shooting(case):
+        yield from smooth_faults(case)
+    elif form_of(case).by_cells and any(
+        place.feed_holes is not None or (not is_plain(place.geometry) and _turns(case, place))
+        for place in film_places(case)
+    ):
+        problem = "has openings that turn: the force depends on their angle, and no whirl returns after one period."
+        remedy = "Leave feed holes that turn out, or take a run-up."
+        yield from (Fault(key, name, None, problem, remedy) for key, name in cavitation_keys(case))
+
+
+def speed_range_faults(case: Case) -> Iterator[Fault]:
+    """Cycles are followed over speeds above zero."""
+    speeds = default_speeds(case)
+    if not speeds or not speeds[-1] > speeds[0]:
+        problem, remedy = "leaves no range of speeds above zero.", 'Write e.g. speed.to = "300 Hz".'
+        yield Fault("speed.to", f"{case.speed.end:g} Hz", None, problem, remedy)
+
+
+def unbalance_faults(case: Case) -> Iterator[Fault]:
+    """Whirls with unbalance need a rotor with unbalance."""
+    if not drives(case):
+        problem, remedy = "is zero: no whirl can lock in with it.", 'Write e.g. rotor.unbalance = "3 g*mm".'
+        yield Fault("disk.unbalance" if case.disks else "rotor.unbalance", "0 g*mm", None, problem, remedy)
+
+
+def drives(case: Case) -> list[str]:
+    """What shakes the rotor of a case once or several times in a revolution, in words."""
+    shaft = shaft_of(case)
+    own = [name for name, size in (("unbalance", shaft.eccentricity), ("bow", shaft.bow)) if size != 0.0]
+    return own + (["harmonic forces"] if harmonics_of(case) else [])
+
+
+def by_shooting(case: Case) -> bool:
+    """Whether limit cycles are found by shooting on the time loop: films are mass-conserving, or are on cells, where
+    their force has kinks, or forces besides theirs are not linear."""
+    kinked = form_of(case).by_cells and not turning_openings(case)
+    return keeps_oil(case) or kinked or bool(element_parts(case).ports)
+
+
+def turning_openings(case: Case) -> bool:
+    """Whether finite-volume films are tabulated as the mean over the angle of their openings: their gaps are even along
+    the axis, all solve a linear equation, and all openings turn."""
+    if form_of(case).inclines or not all_clipped(case) or any(coupled_rings(case)):
+        return False
+    return all(
+        is_plain(place.geometry) or (place.geometry.shell is None and place.grid_body != HOUSING)
+        for place in film_places(case)
+    )
+
+
+def _turns(case: Case, place: FilmPlace) -> bool:
+    return place.grid_body != HOUSING or turns_with_oil(case, place)
+
+
+def _of_films(of: Callable[[Case], Faults]) -> Callable[[Case], Faults]:
+    """A rule of films alone, which a machine without any does not break."""
+    return lambda case: of(case) if case.films else ()
+
+
+def _without_film(what: str) -> Callable[[Case], Faults]:
+    return lambda case: without_film(case, what)
+
+
+RULES = (
+    Rule(element_faults, ALL),
+    Rule(channel_faults, ALL),
+    Rule(films.pull_faults, ALL),
+    Rule(films.supply_faults, ALL),
+    Rule(films.limited_supply_faults, ALL),
+    Rule(films.bath_faults, ALL),
+    Rule(films.sealed_faults, ALL),
+    Rule(films.published_faults, ALL),
+    Rule(lambda case: films.published_tilt_faults(case, bool(case.bearings) and tilts(case)), KINEMATIC),
+    Rule(
+        lambda case: films.published_tilt_faults(case, form_of(case).inclines),
+        tuple(each for each in ALL if each not in KINEMATIC),
+    ),
+    Rule(films.mesh_faults, ALL),
+    Rule(films.rough_faults, ALL),
+    Rule(films.rough_tilt_faults, KINEMATIC),
+    Rule(films.rough_coupling_faults, (RUN,)),
+    Rule(films.rough_heat_faults, (*KINEMATIC, *EVERY_CYCLE)),
+    Rule(films.saturation_faults, ALL),
+    Rule(films.sound_faults, ALL),
+    Rule(films.moved_gas_faults, (RUN, *EVERY_CYCLE), moving=True),
+    Rule(films.enclosed_faults, KINEMATIC),
+    *(Rule(partial(kinematic.motion_faults, test=test), (test,)) for test in KINEMATIC),
+    Rule(kinematic.no_film_faults, KINEMATIC),
+    Rule(_without_film("a bearing sheet describes films; ball bearings have `ball_bearing_sheet`"), SHEETS),
+    Rule(_without_film("a comparison is one of models of films"), (COMPARISON,)),
+    Rule(_without_film("the ladder compares theories and meshes of films"), (LADDER,)),
+    Rule(linear_faults, EVERY_CYCLE),
+    *(Rule(partial(kinematic.turning_faults, test=test), (test,)) for test in KINEMATIC),
+    Rule(kinematic.theory_faults, KINEMATIC),
+    *(Rule(partial(kinematic.tilt_faults, test=test), (test,)) for test in KINEMATIC),
+    Rule(kinematic.misalignment_faults, tuple(each for each in ALL if each not in (*KINEMATIC, *AT_REST, *RUNS))),
+    Rule(lambda case: () if form_of(case).inclines else kinematic.misalignment_faults(case), (*AT_REST, *RUNS)),
+    Rule(static.tilted_sheet_faults, SHEETS),
+    Rule(_of_films(films.theory_faults), (RUN, *KINEMATIC)),
+    Rule(_of_films(films.form_faults), (RUN,)),
+    Rule(_of_films(films.changing_supply_faults), (RUN,)),
+    Rule(static.sheet_faults, SHEETS),
+    Rule(films.sheet_faults, SHEETS),
+    Rule(films.loaded_faults, (LOADED,)),
+    Rule(static.loaded_heat_faults, (LOADED,)),
+    Rule(static.chart_heat_faults, (CHART,)),
+    Rule(static.missing_heat_faults, (HEAT,)),
+    Rule(static.held_ring_faults, (BEARING, LOADED, STABILITY)),
+    Rule(static.held_film_faults, (BEARING, LOADED, STABILITY)),
+    Rule(static.held_cycle_faults, EVERY_CYCLE),
+    Rule(static.pin_cycle_faults, EVERY_CYCLE),
+    Rule(static.port_coupling_faults, (RUN,)),
+    Rule(films.rest_faults, (BEARING, STABILITY, *EVERY_CYCLE)),
+    Rule(films.linear_faults, (STABILITY, *EVERY_CYCLE)),
+    Rule(static.coefficient_faults, (STABILITY,)),
+    Rule(static.range_faults, (RANGE,)),
+    Rule(given_coefficient_faults, (SPEED_CYCLES, WHIRLS)),
+    Rule(cartridge_faults, EVERY_CYCLE),
+    Rule(lambda case: speed_dependent(case, CONSTANT), (CYCLES,)),
+    Rule(cycle_heat_faults, (SPEED_CYCLES, WHIRLS)),
+    Rule(other_cycle_heat_faults, (CYCLES,)),
+    Rule(stray_load_faults, EVERY_CYCLE),
+    Rule(smooth_faults, (CYCLES,)),
+    Rule(speed_cycle_faults, (SPEED_CYCLES, WHIRLS)),
+    Rule(unbalance_faults, (WHIRLS,)),
+    Rule(speed_range_faults, EVERY_CYCLE, last=True),
+    Rule(films.kept_film_faults, (RUN,), moving=True),
+    Rule(films.axial_heat_faults, (RUN,), moving=True),
+    Rule(films.axial_faults, (RUN, *EVERY_CYCLE), moving=True, last=True),
+    Rule(films.drive_faults, (RUN,)),
+    Rule(films.given_speed_faults, (*KINEMATIC, *EVERY_CYCLE, LADDER)),
+    Rule(films.number_faults, (RUN,), last=True),
+    Rule(films.speed_faults, (RUN,), last=True),
+    *(Rule(partial(kinematic.end_faults, test=test), (test,), last=True) for test in KINEMATIC),
+)
+
+
+def faults(case: Case, analysis: str = FILMS) -> list[Fault]:
+    """Every reason why an analysis of a case is refused. Raises InputError if this process does not have the bearing
+    model of the case."""
+    if alone := without_bearing(case):  # no other rule has a subject
+        return alone
+    reasons: list[Fault] = []
+    whole = case
+    if analysis in KINEMATIC:
+        reasons += choice_faults(case, analysis)
+        case = tested_case(case)
+    for rule in sorted((*RULES, *form_of(case).rules, *coupling_of(case).rules), key=lambda rule: rule.last):
+        asked = RUN if analysis == STILL and not rule.moving else analysis
+        if asked in rule.analyses and not (rule.last and reasons):
+            reasons += (replace(fault, key=key_in(whole, fault.key)) for fault in rule.of(case))
+    return list(dict.fromkeys(reasons))  # both ends of a cartridge have the same
+
+
+def require(case: Case, analysis: str = FILMS, more: Faults = ()) -> None:
+    """Raises InputError with every reason why an analysis of a case is refused; more: found by its caller."""
+    if reasons := [*more, *faults(case, analysis)]:
+        raise InputError(case.name or "case", tuple(reasons))

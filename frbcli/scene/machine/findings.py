@@ -25,7 +25,7 @@ from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, speed_shown
 from frbcli.elements.supports import DamperElement
 from frbcli.errors import NotConverged
-from frbcli.film.operating import (
+from frbcli.film.gap import (
     LAMINAR_BELOW,
     RING_SPEED,
     reynolds_number,
@@ -34,12 +34,11 @@ from frbcli.film.operating import (
     sommerfeld_number,
 )
 from frbcli.materials import SOLIDS, STEEL, Solid
-from frbcli.rotor.assembly import LinearRotor, held_rotor
-from frbcli.rotor.body import COORDINATES, PLANE
+from frbcli.rotor.assembly import COORDINATES, PLANE, LinearRotor, held_rotor
 from frbcli.scene.films import ROTOR, film_places
 from frbcli.scene.gate.rule import run_omega
 from frbcli.scene.machine.rotor import make_rotor
-from frbcli.scene.shafts.table import shaft_of
+from frbcli.scene.machine.turbocharger import shaft_of
 from frbcli.units import display
 
 

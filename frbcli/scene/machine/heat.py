@@ -20,17 +20,16 @@ from frbcli.arrays import Array
 from frbcli.case.bearing import FilmBearing, FloatingRingBearing, SingleFilmBearing
 from frbcli.case.film import ColdClearance, FilmGeometry
 from frbcli.case.model import altered
+from frbcli.case.oil import QUASI_STEADY, Thermal, WallNode
+from frbcli.case.over_time import OverTime, largest
 from frbcli.case.schema import Case
-from frbcli.case.surroundings.over_time import OverTime, largest
-from frbcli.case.surroundings.supports import Damper
-from frbcli.case.thermal import QUASI_STEADY, Thermal, WallNode
+from frbcli.case.surroundings import Damper
 from frbcli.elements.supports import DamperElement
-from frbcli.film.operating import ring_rotation_strains, shaft_rotation_strain
+from frbcli.film.gap import ring_rotation_strains, shaft_rotation_strain
 from frbcli.materials import SOLIDS
-from frbcli.scene.channels import coupled, opens_to_groove
-from frbcli.scene.films import film_places, turning_rings
+from frbcli.scene.films import coupled, film_places, opens_to_groove, turning_rings
 from frbcli.scene.machine.system import System, make_system
-from frbcli.scene.planning.planned import Plan
+from frbcli.scene.planning.film_choice import Plan
 from frbcli.thermal.model import FROM_SUPPLY, OIL_AT, HeatModel
 
 

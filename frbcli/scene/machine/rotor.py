@@ -15,19 +15,30 @@ from numpy.typing import NDArray
 from frbcli.arrays import Array
 from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing, GivenBearing
 from frbcli.case.schema import Case
+from frbcli.elements.ball import BallBearingElement
 from frbcli.elements.coefficients import GivenCoefficients
 from frbcli.elements.element import Line, MachineElement, Parts, Site
-from frbcli.elements.rolling.ball import BallBearingElement
 from frbcli.elements.supports import DamperElement, HousingElement, SupportElement
 from frbcli.elements.table import elements_of
 from frbcli.elements.thrust import COLLAR
 from frbcli.errors import Fault
-from frbcli.rotor.assembly import GROUND, LinearRotor, Link, assembled, preset
-from frbcli.rotor.body import PLANE, Body, point_mass, spin, tilting_mass, tilting_ring
+from frbcli.rotor.assembly import (
+    GROUND,
+    PLANE,
+    Body,
+    LinearRotor,
+    Link,
+    assembled,
+    point_mass,
+    preset,
+    spin,
+    tilting_mass,
+    tilting_ring,
+)
 from frbcli.rotor.loads import Harmonic, Tabulated
 from frbcli.rotor.port import ForceLaw
 from frbcli.scene.films import turning_rings
-from frbcli.scene.shafts.table import shaft_of
+from frbcli.scene.machine.turbocharger import shaft_of
 
 
 def site_of(case: Case) -> Site:

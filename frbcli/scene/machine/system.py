@@ -25,20 +25,18 @@ from frbcli.film.cells.tilted.steady_force import tilted_film
 from frbcli.film.gap import Section, whole_width
 from frbcli.film.grid import Mesh
 from frbcli.film.kinds.cells import CellFilms
-from frbcli.film.kinds.contract import Films, NoFilms
-from frbcli.film.kinds.tables import RectangleFilms, SolutionFilms
+from frbcli.film.kinds.contract import Films, NoFilms, RectangleFilms, SolutionFilms
 from frbcli.film.kinds.tilted import InclinedFilms, TiltedFilms
 from frbcli.film.penalty_table.film import SourceFilm
 from frbcli.film.rectangles.film import FilmForce, make_film
 from frbcli.film.roughness.asperities import Asperities, make_asperities
 from frbcli.film.roughness.contact import ElasticShell, Rubbing
-from frbcli.rotor.assembly import LinearRotor
-from frbcli.rotor.body import COORDINATES, PLANE
+from frbcli.rotor.assembly import COORDINATES, PLANE, LinearRotor
 from frbcli.scene.changes import case_at, change_times, step_times
-from frbcli.scene.channels import coupled_channels
 from frbcli.scene.films import (
     FilmPlace,
     centrifugal_pressures,
+    coupled_channels,
     film_places,
     film_section,
     make_law,
@@ -47,13 +45,12 @@ from frbcli.scene.films import (
     turns_with_oil,
     volume_film,
 )
-from frbcli.scene.forms.cells import CELLS, cells_of
 from frbcli.scene.forms.form import NO_FILM
 from frbcli.scene.forms.solutions import SOLUTIONS
-from frbcli.scene.forms.tilted import INCLINED, TILTED
+from frbcli.scene.forms.tilted import CELLS, INCLINED, TILTED, cells_of
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.planning.cell_choice import compared_states
-from frbcli.scene.planning.planned import Plan
+from frbcli.scene.planning.film_choice import Plan
 
 # What the balances of a film may be off by over its pace: over the tolerance of a step, and its limits. A film that is
 # off by 1e-4 of its pace in each stage leaves 1e-6 of the clearance in a run.

@@ -2,25 +2,37 @@
 
 The errors are relative to the force and measured (docs/accuracy.md): half-Sommerfeld films against a solution on
 14 x 256 elements, at states as in a whirl, for b/D = 0.1 to 0.8.
+
+A plan, and the choices that it is made of.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from frbcli.case.film import FilmGeometry
 from frbcli.case.schema import Case
+from frbcli.columns import html_table
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import Mesh
-from frbcli.scene.films import film_places, turning_rings
-from frbcli.scene.forms.cells import CELLS, CellForm
-from frbcli.scene.forms.form import NO_FILM, FilmForm
+from frbcli.scene.films import film_places, misaligned, turning_rings
+from frbcli.scene.forms.form import CHAINS, CLIPPED, CLOSED_FORM, FIELDS, MOST_EXPENSIVE_FIRST, NO_FILM, TABLE, FilmForm
 from frbcli.scene.forms.solutions import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
-from frbcli.scene.forms.tables import CHAINS, CLIPPED, CLOSED_FORM, FIELDS, MOST_EXPENSIVE_FIRST, TABLE
-from frbcli.scene.forms.tilted import INCLINED, TILTED
-from frbcli.scene.planning.cell_choice import WorstFilm, fewest_cells, given_cells, worst_film
-from frbcli.scene.planning.eccentricity import expected_eccentricity, short_error, slenderness_of
-from frbcli.scene.tilt import misaligned
+from frbcli.scene.forms.tilted import CELLS, INCLINED, TILTED, CellForm
+from frbcli.scene.planning.cell_choice import (
+    WorstFilm,
+    expected_eccentricity,
+    fewest_cells,
+    given_cells,
+    short_error,
+    slenderness_of,
+    worst_film,
+)
+
+if TYPE_CHECKING:
+    from frbcli.scene.forms.form import FilmForm
+
 
 # Eccentricity up to which films hold the target. A finer table costs little more; a film that is solved at every film
 # call would cost much more for eccentricities close to 1.
@@ -191,3 +203,50 @@ def _cells(case: Case, form: CellForm, worst: WorstFilm, target: float) -> tuple
         return form.of_whole(cells), f"{why}; "
     allowed = (RING_SHARE if turning_rings(case) else CELL_SHARE) * target
     return fewest_cells(worst, allowed, REACHED * target, form.lengths, form.as_exact), ""
+
+
+@dataclass(frozen=True)
+class Decision:
+    """One choice of the plan: what was chosen, and why."""
+
+    choice: str
+    value: str
+    reason: str
+
+
+@dataclass(frozen=True, repr=False)
+class Plan:
+    """What will be modelled. theory: "short" | "finite"; cavitation: of films that name
+    none of their own; form: how the most expensive film is computed; mesh: the finest mesh of elements; films: form and
+    mesh of each film on quadratic elements; cells: (around, along) of finite-volume films, None for other films;
+    film_error: expected relative error of the forces; method: name of a time integration method; tolerance: local error
+    of a displacement over the clearance; steps_per_revolution: at least; coupling: one of COUPLINGS; macro_step:
+    longest one in s of a co-simulation, else None; length: m, instead of the clearance for machines without films, see
+    reference_length; eccentricity: that the cells are chosen for, see FilmChoice; edged: whether finite-volume films
+    have the edge of their cavity within cells, see VolumeFilm: at rest alone."""
+
+    theory: str
+    cavitation: str
+    form: FilmForm
+    mesh: Mesh
+    films: tuple[tuple[FilmForm, Mesh], ...]
+    cells: tuple[int, int] | None
+    film_error: float
+    method: str
+    tolerance: float
+    steps_per_revolution: float
+    coupling: str
+    macro_step: float | None
+    decisions: tuple[Decision, ...]
+    length: float = 0.0
+    eccentricity: float | None = None
+    edged: bool = False
+
+    def __repr__(self) -> str:
+        """Its choices, one on a line."""
+        return "\n".join(["Plan", *(f"{each.choice}: {each.value}" for each in self.decisions)])
+
+    def _repr_html_(self) -> str:
+        """In a notebook: its decisions."""
+        rows = [(each.choice, each.value, each.reason) for each in self.decisions]
+        return html_table("plan", ("choice", "value", "reason"), rows, len(rows))

@@ -13,17 +13,15 @@ from frbcli.errors import Fault, did_you_mean
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import label_of, law_named, names
 from frbcli.film.gap import Section, ends_at_ambient, whole_width
-from frbcli.scene.films import film_rectangle, film_section, make_law
-from frbcli.scene.forms.cells import CELLS
-from frbcli.scene.forms.form import FilmForm
-from frbcli.scene.forms.tables import MODAL, SHORT
-from frbcli.scene.gate.gate import require
+from frbcli.scene.films import film_rectangle, film_section, least_gaps, make_law, places_of, slope_of, tilt_of, tilts
+from frbcli.scene.forms.form import MODAL, SHORT, FilmForm
+from frbcli.scene.forms.tilted import CELLS
 from frbcli.scene.gate.kinematic import tested_case
 from frbcli.scene.gate.rule import KINEMATIC, ROTATION, motion_omega
+from frbcli.scene.gate.static import require
 from frbcli.scene.planning.cell_choice import given_cells
-from frbcli.scene.planning.planned import Decision
+from frbcli.scene.planning.film_choice import Decision
 from frbcli.scene.supply import unfed_films
-from frbcli.scene.tilt import least_gaps, places_of, slope_of, tilt_of, tilts
 
 TESTS = KINEMATIC
 

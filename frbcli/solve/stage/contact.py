@@ -14,6 +14,21 @@ Gyroscopic moments of rings that turn and tilt, cartridges, in a stage of the ti
   joins the acceleration FREE of each stage, see equations.py, by the velocities of the iteration before.
 
 Which of them a function means is decided by the type of the cones when the loop is compiled, as in loads.py.
+
+Loads that change with the angle of the rotor or with time, in a stage of the time loop. Compiled. Two kinds:
+
+- an empty tuple: a machine without them, for which nothing is computed;
+- VaryingLoads: they join the acceleration FREE of each stage, see equations.py.
+
+Which of them a function means is decided by the type of the loads when the loop is compiled, as in heat.py.
+
+Forces at ports, see rotor/port.py, in a stage of the time loop. Compiled. Two kinds:
+
+- an empty tuple: a machine without them, for which nothing is computed;
+- Ports: the displacements and velocities that they see are unknowns of Newton's method in addition to the journals',
+  which they follow in all arrays of a stage.
+
+Which of them a function means is decided by the type of the ports when the loop is compiled, as in loads.py.
 """
 
 from __future__ import annotations
@@ -26,12 +41,139 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.arrays import Array
-from frbcli.compiled import compiled, compiled_for
+from frbcli.compiled import Indices, address_of, compiled, compiled_for
+from frbcli.dense import solve_dense
 from frbcli.film.contact_gap import ELASTIC_LIMIT, closes_freely_until, contact_gap
 from frbcli.film.roughness.asperities import APART, Asperities, Rub, rub
-from frbcli.solve.stage.equations import BY_X, BY_Y, FORCE, FREE, LATE, U_0, X_0, U, V
-from frbcli.solve.stage.loads import solve_columns
+from frbcli.rotor.loads import Harmonic, Load, Tabulated
+from frbcli.rotor.port import (
+    ANGLE,
+    ANSWER,
+    D_X,
+    F_X,
+    F_Y,
+    MOTION,
+    SPEED,
+    V_X,
+    V_XX,
+    V_XY,
+    V_YX,
+    V_YY,
+    XX,
+    XY,
+    YX,
+    YY,
+    Port,
+)
+from frbcli.rotor.port_function import call_force, compiled_force
+from frbcli.solve.stage.equations import BY_X, BY_Y, FORCE, FREE, LATE, U_0, X_0, U, V, add_table
 from frbcli.solve.state import SLIP, SUM, Control, RotorData
+
+ORDER, FREQUENCY = range(2)  # of a harmonic
+
+
+class VaryingLoads(NamedTuple):
+    """The h harmonic and then the k tabulated loads of rotor/loads.py.
+
+    columns: (2 (h + k), n) N; turns: (h, 2) ORDER and FREQUENCY in rad/s; first: (k + 1,) row of each table, and their
+    number; times: (rows,) s of all tables; cubics: (rows, 2, 4); response: as columns, m/s^2, of the inverse E of
+    equations.py with them; elimination: (2, n, 2 n + columns) to work in.
+    """
+
+    columns: Array
+    turns: Array
+    first: NDArray[np.int64]
+    times: Array
+    cubics: Array
+    response: Array
+    elimination: Array
+
+
+def varying_loads(loads: Sequence[Load]) -> VaryingLoads | tuple[()]:
+    """The loads of a machine as the time loop takes them."""
+    if not loads:
+        return ()
+    harmonics = [load for load in loads if isinstance(load, Harmonic)]
+    tables = [load for load in loads if isinstance(load, Tabulated)]
+    columns = np.concatenate([load.columns for load in (*harmonics, *tables)])
+    count, n = columns.shape
+    nothing = np.zeros((1, 2, 4))  # behind the end of each table
+    return VaryingLoads(
+        columns,
+        np.array([[load.order, load.frequency] for load in harmonics]).reshape(-1, 2),
+        np.cumsum([0, *(len(table.times) for table in tables)]),
+        np.concatenate([np.zeros(0), *(table.times for table in tables)]),
+        np.concatenate([nothing[:0], *(part for table in tables for part in (table.cubics, nothing))]),
+        np.zeros((count, n)),
+        np.zeros((2, n, 2 * n + count)),
+    )
+
+
+@compiled_for(VaryingLoads)
+def prepare_loads(loads: VaryingLoads, rotor: RotorData, g: float, speed: float) -> None:
+    """The inverse of `prepare` for this g and speed with the loads."""
+    solve_columns(loads.columns, loads.response, loads.elimination, rotor, g, speed)
+
+
+@compiled()
+def solve_columns(
+    columns: Array, response: Array, elimination: Array, rotor: RotorData, g: float, speed: float
+) -> None:
+    """response <- the inverse E of equations.py for this g and speed with columns (c, n) of forces."""
+    n, count = rotor.mass.shape[0], columns.shape[0]
+    dynamic, right = elimination[0], elimination[1]  # the forces lie behind the columns of add_table
+    for i in range(n):
+        for j in range(n):
+            dynamic[i, j] = rotor.mass[i, j] + g * (
+                rotor.damping[i, j] + speed * rotor.gyroscopic[i, j] + g * rotor.stiffness[i, j]
+            )
+        for k in range(count):
+            right[i, 2 * n + k] = columns[k, i]
+    if rotor.table_speeds.shape[0] > 0:
+        add_table(rotor, g, speed, dynamic, right)
+    solve_dense(dynamic, right)
+    for i in range(n):
+        for k in range(count):
+            response[k, i] = right[i, 2 * n + k]
+
+
+@compiled()
+def row_at(times: Array, first: int, end: int, t: float) -> int:
+    """The row of a table, of rows from first up to end, whose piece holds the time t."""
+    low, high = first, end - 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        if times[middle] <= t:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+@compiled()
+def _cubic(coefficients: Array, s: float) -> float:
+    return float(coefficients[0] + s * (coefficients[1] + s * (coefficients[2] + s * coefficients[3])))
+
+
+@compiled_for(VaryingLoads)
+def add_loads(
+    loads: VaryingLoads, t: float, angle: float, g: float, selection: Array, at: Array, journal: Array
+) -> None:
+    """Add the loads at the time t in s and the angle of the rotor then to FREE of `at` and U_0 of `journal`."""
+    harmonics = loads.turns.shape[0]
+    for k in range(harmonics + loads.first.shape[0] - 1):
+        if k < harmonics:
+            theta = loads.turns[k, ORDER] * angle + loads.turns[k, FREQUENCY] * t
+            one, other = math.cos(theta), math.sin(theta)
+        else:
+            row = row_at(loads.times, loads.first[k - harmonics], loads.first[k - harmonics + 1], t)
+            since = t - loads.times[row]
+            one, other = _cubic(loads.cubics[row, 0], since), _cubic(loads.cubics[row, 1], since)
+        for i in range(at.shape[1]):
+            more = one * loads.response[2 * k, i] + other * loads.response[2 * k + 1, i]
+            at[FREE, i] += more
+            for j in range(selection.shape[0]):
+                journal[U_0, j] += g * selection[j, i] * more
 
 
 @compiled(inline=True)
@@ -195,3 +337,94 @@ def turn_cones(
             journal[U_0, k] += g * rate
             change = max(change, abs(g * rate))
     return change
+
+
+class Ports(NamedTuple):
+    """The k ports of a machine. addresses: (k,) of their laws; places: (k, 2, n) and counts (k,), see Port; lengths:
+    (k,) m; first: (k + 1, 2) of the parameters and memories of each in numbers and memory; motion, answer: of the call
+    of a law; missed: (2 k,) by how much the forces differ from those that Newton's method has used, N."""
+
+    addresses: Indices
+    places: Array
+    counts: Array
+    lengths: Array
+    first: Indices
+    numbers: Array
+    memory: Array
+    motion: Array
+    answer: Array
+    missed: Array
+
+
+def make_ports(ports: Sequence[Port]) -> Ports | tuple[()]:
+    """The ports of a machine as the time loop takes them."""
+    if not ports:
+        return ()
+    laws = [port.law for port in ports]
+    sizes = [(len(law.parameters), len(law.memory)) for law in laws]
+    return Ports(
+        np.array([address_of(compiled_force(type(law))) for law in laws], dtype=np.int64),
+        np.array([port.place for port in ports]),
+        np.array([port.count for port in ports]),
+        np.array([law.length for law in laws]),
+        np.concatenate([np.zeros((1, 2), dtype=np.int64), np.cumsum(sizes, axis=0)]),
+        np.concatenate([law.parameters for law in laws]),
+        np.concatenate([law.memory for law in laws]),
+        np.zeros(MOTION),
+        np.zeros(ANSWER),
+        np.zeros(2 * len(ports)),
+    )
+
+
+@compiled_for(Ports, math.inf)
+def shortest(ports: Ports) -> float:
+    """The least of the lengths, m."""
+    least = math.inf
+    for k in range(ports.lengths.shape[0]):
+        least = min(least, ports.lengths[k])
+    return least
+
+
+@compiled_for(Ports)
+def turn_ports(ports: Ports, speed: float, angle: float) -> None:
+    """Speed in rad/s and angle of the rotor in a stage."""
+    ports.motion[SPEED], ports.motion[ANGLE] = speed, angle
+
+
+@compiled()
+def _ask(ports: Ports, k: int, x: int, g: float, journal: Array) -> None:
+    """The answer of port k, whose motion is columns x and x + 1 of the journal, at the velocities U."""
+    for i in range(2):
+        ports.motion[D_X + i] = journal[X_0, x + i] + g * journal[U, x + i]
+        ports.motion[V_X + i] = journal[U, x + i]
+    (a, c), (b, d) = (ports.first[k, 0], ports.first[k, 1]), (ports.first[k + 1, 0], ports.first[k + 1, 1])
+    call_force(ports.addresses[k], b - a, d - c, ports.numbers[a:b], ports.memory[c:d], ports.motion, ports.answer)
+
+
+@compiled_for(Ports)
+def push_ports(ports: Ports, films: int, g: float, journal: Array) -> None:
+    """Fill FORCE, BY_X, BY_Y of the ports, which follow so many films."""
+    for k in range(ports.lengths.shape[0]):
+        x = 2 * (films + k)
+        y, out = x + 1, ports.answer
+        _ask(ports, k, x, g, journal)
+        journal[FORCE, x], journal[FORCE, y] = out[F_X], out[F_Y]
+        journal[BY_X, x], journal[BY_Y, x] = out[V_XX] + g * out[XX], out[V_XY] + g * out[XY]
+        journal[BY_X, y], journal[BY_Y, y] = out[V_YX] + g * out[YX], out[V_YY] + g * out[YY]
+
+
+@compiled_for(Ports, 0.0)
+def left_at_ports(ports: Ports, clearances: Array, compliance: Array, g: float, journal: Array) -> float:
+    """What the forces at the corrected velocities U would move on, over clearances and lengths: they are known there,
+    and FORCE has them to first order."""
+    films, left = clearances.shape[0], 0.0
+    for k in range(ports.lengths.shape[0]):
+        _ask(ports, k, 2 * (films + k), g, journal)
+        for i in range(2):
+            ports.missed[2 * k + i] = ports.answer[F_X + i] - journal[FORCE, 2 * (films + k) + i]
+    for i in range(compliance.shape[0]):
+        moved, length = 0.0, clearances[i // 2] if i < 2 * films else ports.lengths[i // 2 - films]
+        for j in range(ports.missed.shape[0]):
+            moved += compliance[i, 2 * films + j] * ports.missed[j]
+        left = max(left, g * abs(moved) / length)
+    return left

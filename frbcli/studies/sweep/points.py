@@ -20,7 +20,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.errors import Fault, InputError, input_error
-from frbcli.results.files.named import Unreadable, text_of
+from frbcli.results.write import Unreadable, text_of
 
 Settings = dict[str, str]  # key of the case -> value as text, as `--set` takes it
 

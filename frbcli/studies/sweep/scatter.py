@@ -11,11 +11,11 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.errors import input_error
-from frbcli.linear.threshold import STABLE, UNSTABLE
+from frbcli.linear.stability_point import STABLE, UNSTABLE
 from frbcli.results.records import WHOLE
 from frbcli.studies.sweep.points import NUMBER
 from frbcli.studies.sweep.sweep import Sweep
-from frbcli.studies.sweep.task import NO_WHIRL, ONSET, THRESHOLD, SweepPoint
+from frbcli.studies.sweep.workers import NO_WHIRL, ONSET, THRESHOLD, SweepPoint
 
 PERCENTS = (5.0, 25.0, 50.0, 75.0, 95.0)
 SURE = 1.959964  # standard deviations of an interval of 95 %

@@ -18,27 +18,29 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from frbcli import __version__
-from frbcli.analysis.orders.subsynchronous import whirls
+from frbcli.analysis.subsynchronous import whirls
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, Table, Tabular, table_of
 from frbcli.errors import InputError
-from frbcli.results.files.lock import locked
-from frbcli.results.files.write import MARK, TABLES, written
-from frbcli.results.files.write import write_table as write_csv
+from frbcli.results.container import locked
+from frbcli.results.write import MARK, TABLES, written
+from frbcli.results.write import write_table as write_csv
 from frbcli.scene.planning.plan import make_plan
 from frbcli.studies.sweep.points import Settings, checked, grid, refused
-from frbcli.studies.sweep.task import (
+from frbcli.studies.sweep.workers import (
     INPUT_ERROR,
     INTERRUPTED,
     METHODS,
     SweepPoint,
     Task,
+    Workers,
     append,
+    check_workers,
     one_line,
     open_log,
     solve,
+    solved,
 )
-from frbcli.studies.sweep.workers import Workers, check_workers, solved
 from frbcli.studies.warm_up import machine_kernels, moment_of_run
 from frbcli.units import HERTZ, SpeedUnit
 

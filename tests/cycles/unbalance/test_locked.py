@@ -9,7 +9,7 @@ import pytest
 
 import frbcli
 from frbcli.case.reading.load import load_case_text
-from frbcli.cycles.result import UnbalancedWhirl
+from frbcli.cycles.columns import UnbalancedWhirl
 
 
 def jeffcott(unbalance: float, *settings: str) -> frbcli.Case:

@@ -9,10 +9,8 @@ import pytest
 from ball_bearings import STEEL, A, B
 from paths import DATA
 
-from frbcli.elements.rolling.bearing import BallBearing
-from frbcli.elements.rolling.force import ball_bearing_force
-from frbcli.elements.rolling.plain import solve_plain
-from frbcli.elements.rolling.rest import at_displacement, rating_life, under_load
+from frbcli.elements.ball import BallBearing, at_displacement, rating_life, under_load
+from frbcli.elements.ball_force import ball_bearing_force, solve_plain
 
 BEARINGS = {"A": A, "B": B}
 # independent program: Hertz contacts by elliptic integrals, centrifugal force of the balls, no friction, no gyroscopic

@@ -13,8 +13,8 @@ from scipy.integrate import quad
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict
-from frbcli.elements.rolling.ball import BallBearingElement, BallForce
-from frbcli.elements.rolling.plain import solve_plain
+from frbcli.elements.ball import BallBearingElement, BallForce
+from frbcli.elements.ball_force import solve_plain
 from frbcli.errors import InputError
 from frbcli.linear.sheets.ball import ball_bearing_sheet
 from frbcli.linear.stability import stability
@@ -22,8 +22,8 @@ from frbcli.rotor.loads import speed_profile
 from frbcli.rotor.port import ANSWER
 from frbcli.rotor.port_function import evaluate, evaluate_along
 from frbcli.runs.run import runup
-from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import CYCLES, RUN
+from frbcli.scene.gate.static import faults
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 

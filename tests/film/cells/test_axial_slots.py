@@ -12,8 +12,8 @@ from frbcli import load_case
 from frbcli.case.schema import Case
 from frbcli.cli.main import run
 from frbcli.errors import InputError
+from frbcli.film.cells.film import Motion
 from frbcli.film.cells.loads import loads
-from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.section_faults import section_faults
 from frbcli.report.sketch import film_sketches, rotor_sketch

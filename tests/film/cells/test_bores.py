@@ -11,10 +11,9 @@ import pytest
 from frbcli.film.cavitation.conditions import Elrod, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.film import VolumeFilm, VolumeSolution
+from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution
 from frbcli.film.cells.loads import force, oil_balance
 from frbcli.film.cells.mesh.grid import VolumeGrid, force_weights, run_grid, volume_grid
-from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Hole, Section
 from frbcli.scene.planning.cell_choice import BORES_OIL

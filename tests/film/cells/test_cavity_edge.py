@@ -8,11 +8,9 @@ import numpy as np
 import pytest
 
 from frbcli.case.reading.load import load_case
-from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.linearised import lying
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.film import Motion, VolumeFilm
+from frbcli.film.cells.linearised import film_at, lying, settled_force
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.steady_force import film_at, settled_force
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.scene.films import film_places, volume_film
 

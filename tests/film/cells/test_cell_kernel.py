@@ -44,9 +44,8 @@ from frbcli.film.cells.block_cyclic import (
     solve_ring_at,
 )
 from frbcli.film.cells.data import ALL_SIDES, SIDES, volume_films
-from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.film import Motion, Storage, VolumeFilm
 from frbcli.film.cells.mesh.grid import volume_grid
-from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Hole, Section, gap_height, gap_rate
 

@@ -16,10 +16,9 @@ from frbcli.film.cells.balance.balances import FLOWS, GridMotion, balances
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, STATES, cell_states, follow_law
 from frbcli.film.cells.block_cyclic import ENTRIES
 from frbcli.film.cells.data import ALL_SIDES, SIDES, volume_films
-from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure
+from frbcli.film.cells.film import Motion, VolumeFilm, fitted_grid, reference_pressure
 from frbcli.film.cells.loads import FilmLoads, loads
 from frbcli.film.cells.mesh.grid import volume_grid
-from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.tilted.motion import seen_by_grid
 from frbcli.film.cells.tilted.steady_force import lands, summed

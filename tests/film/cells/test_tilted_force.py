@@ -12,7 +12,7 @@ from frbcli.errors import NotConverged
 from frbcli.film.cavitation.conditions import HalfSommerfeld, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.steady_force import steady_force
+from frbcli.film.cells.linearised import steady_force
 from frbcli.film.cells.tilted.steady_force import TiltedFilm, tilted_film, tilted_force
 from frbcli.film.gap import Section
 

@@ -18,9 +18,8 @@ from frbcli.film.cavitation.penalty import PREFACTOR, Penalty, steepness_exponen
 from frbcli.film.cavitation.two_phase import Peeken, TwoPhase
 from frbcli.film.cells import solver
 from frbcli.film.cells.balance.plain import CellBalances
-from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure
+from frbcli.film.cells.film import Motion, Storage, VolumeFilm, fitted_grid, reference_pressure
 from frbcli.film.cells.loads import loads
-from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
 from frbcli.scene.planning.kinematic_plan import STEADY_CELLS

@@ -15,10 +15,9 @@ from frbcli.bearing_tests.history import march
 from frbcli.film.cavitation.conditions import Elrod, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.film import Motion, VolumeFilm
 from frbcli.film.cells.loads import loads
 from frbcli.film.cells.mesh.grid import fitted_grid, volume_grid
-from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import AxialGroove, Hole, Section, gap_height
 from frbcli.film.section_faults import runs_dry, section_faults

@@ -16,10 +16,9 @@ from frbcli.errors import NotConverged
 from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.film import VolumeFilm, VolumeSolution, reference_pressure
+from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution, reference_pressure
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.mesh.grid import volume_grid
-from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
 

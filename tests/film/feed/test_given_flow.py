@@ -12,14 +12,13 @@ from frbcli.case.schema import Case
 from frbcli.errors import FilmUnsolved, InputError
 from frbcli.film.cells.balance.boundaries import ALL, feed_at, limited, supply_pressure
 from frbcli.film.cells.balance.side_flow import outflow
-from frbcli.film.cells.film import VolumeFilm, VolumeSolution
+from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution
+from frbcli.film.cells.linearised import steady_force
 from frbcli.film.cells.loads import FilmLoads, loads
-from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.steady_force import steady_force
 from frbcli.scene.films import film_places, volume_film
-from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import ROTATION, STILL
+from frbcli.scene.gate.static import require
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 

@@ -10,10 +10,9 @@ from frbcli import load_case
 from frbcli.case.schema import Case
 from frbcli.film.cells.balance.boundaries import feed_at, supply_line
 from frbcli.film.cells.balance.states import UPWIND
-from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.film import Motion, Storage, VolumeFilm
 from frbcli.film.cells.linearised import linear_film, stiffness_at
 from frbcli.film.cells.loads import force
-from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.scene.films import film_places, volume_film
 

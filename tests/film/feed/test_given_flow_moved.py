@@ -9,8 +9,7 @@ from frbcli import load_case
 from frbcli.bearing_tests.history import march, whirl_path
 from frbcli.case.schema import Case
 from frbcli.film.cells.balance.boundaries import ALL, RESPONSE, supply_line
-from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.film import Motion, VolumeFilm
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.scene.films import film_places, volume_film
 

@@ -17,8 +17,8 @@ from frbcli.errors import RunFileError
 from frbcli.film.cells.balance.balances import FILLING, SUPPLY_NET
 from frbcli.film.cells.balance.boundaries import feed_at, supply_line
 from frbcli.film.cells.data import PASSED
-from frbcli.film.cells.motion import Motion
-from frbcli.film.cells.steady_force import steady_solution
+from frbcli.film.cells.film import Motion
+from frbcli.film.cells.linearised import steady_solution
 from frbcli.plot.run.quantities import quantity_figure
 from frbcli.results.store import Run
 from frbcli.runs import march

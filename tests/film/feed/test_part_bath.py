@@ -10,14 +10,13 @@ import pytest
 from frbcli import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
-from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.film import Motion, VolumeFilm
 from frbcli.film.cells.loads import FilmLoads, loads
-from frbcli.film.cells.mesh.openings import bathed
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.mesh.bores import bathed
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.scene.films import film_places, turns_with_oil, volume_film
-from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import ROTATION
+from frbcli.scene.gate.static import require
 
 MOTION = Motion((0.3, -0.5), (0.0, 0.0), 300.0)
 SUPPLY = 'bearing.supply={ kind = "axial-grooves", opening_angle = "20 deg", pressure = "1.5 bar" }'

@@ -18,13 +18,12 @@ from frbcli.film.cavitation.law import Law, Scales
 from frbcli.film.cavitation.two_phase import Peeken
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, STATES, cell_states, follow_law
 from frbcli.film.cells.data import volume_films
-from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
+from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
 from frbcli.film.cells.loads import force, oil_balance
-from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
-from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import BEARING, LADDER, RUN, SPEED_CYCLES, STABILITY, WHIRLS
+from frbcli.scene.gate.static import require
 
 NEVER = 1e12  # s
 SUPPLIES = ("circumferential-groove", "axial-groove")

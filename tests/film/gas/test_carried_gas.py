@@ -24,10 +24,9 @@ from frbcli.film.cells.balance.states import (
     follow_law,
 )
 from frbcli.film.cells.data import volume_films
-from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
+from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
 from frbcli.film.cells.gas.balance import Carried, KeptGas, OilPaths, brought
 from frbcli.film.cells.gas.carry import PATHS, store_gas_rates, take_gas_along
-from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 
 SUPPLIES = ("circumferential-groove", "axial-groove")

@@ -12,11 +12,10 @@ from frbcli.bearing_tests.history import march
 from frbcli.film.cavitation.bubbly import Bubbly
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import Peeken
-from frbcli.film.cells.film import VolumeFilm, fitted_grid
-from frbcli.film.cells.gas.linear import linear_states
+from frbcli.film.cells.film import Motion, VolumeFilm, fitted_grid
+from frbcli.film.cells.gas.balance import linear_states
 from frbcli.film.cells.linearised import LinearFilm, linear_film, stiffness_at
 from frbcli.film.cells.loads import force, pushed
-from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
 

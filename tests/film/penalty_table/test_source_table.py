@@ -12,15 +12,14 @@ import pytest
 import frbcli
 from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
-from frbcli.cycles.method.mesh_error import other_films
+from frbcli.cycles.method.follower import other_films
 from frbcli.errors import InputError
 from frbcli.film.cavitation.conditions import Reynolds
-from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.film import Motion, VolumeFilm
+from frbcli.film.cells.linearised import film_at
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.mesh.grid import fitted_grid
-from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.steady_force import film_at
 from frbcli.film.grid import Mesh
 from frbcli.film.penalty_table.film import SourceFilm
 from frbcli.film.penalty_table.table import (

@@ -24,11 +24,10 @@ from frbcli.film.cells.balance.plain_diffusion import spreads
 from frbcli.film.cells.balance.states import STATES, cell_states, follow_law
 from frbcli.film.cells.block_cyclic import ENTRIES
 from frbcli.film.cells.data import SIDES, volume_films
-from frbcli.film.cells.film import VolumeFilm, reference_pressure, volume_grid
+from frbcli.film.cells.film import Motion, Storage, VolumeFilm, reference_pressure, volume_grid
+from frbcli.film.cells.linearised import oil_slopes, steady_force
 from frbcli.film.cells.loads import force, loads
-from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.steady_force import oil_slopes, steady_force
 from frbcli.film.gap import Diffusion, Hole, Section, gap_height
 from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.film import direct_force

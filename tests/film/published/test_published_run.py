@@ -17,17 +17,16 @@ from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cells.balance.balances import CREATED
 from frbcli.film.cells.data import NOW, OIL, PASSED
+from frbcli.film.cells.film import Motion
 from frbcli.film.cells.loads import loads
-from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.runs.march import control_of
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.machine.system import System, make_system
-from frbcli.scene.planning.eccentricity import run_up_profile
+from frbcli.scene.planning.cell_choice import run_up_profile
+from frbcli.scene.planning.film_choice import Plan
 from frbcli.scene.planning.plan import make_plan
-from frbcli.scene.planning.planned import Plan
-from frbcli.solve.state import FINISHED, RUNNING, Control, State, make_output
-from frbcli.solve.tableau import METHODS
+from frbcli.solve.state import FINISHED, METHODS, RUNNING, Control, State, make_output
 from frbcli.solve.time_loop import advance
 
 SHORT = ["speed.from=30Hz", "speed.to=30Hz", "speed.duration=0.02s", "output.step=0.5ms", "accuracy.mesh=[6,40]"]

@@ -10,14 +10,13 @@ from scipy.integrate import quad
 
 from frbcli.film.cavitation.conditions import Elrod, Sommerfeld
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cells.film import VolumeFilm, fitted_grid
+from frbcli.film.cells.film import Motion, VolumeFilm, fitted_grid
+from frbcli.film.cells.linearised import settled_force
 from frbcli.film.cells.loads import FilmLoads, loads
-from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.steady_force import settled_force
 from frbcli.film.gap import Section
+from frbcli.film.roughness.contact import flowing_cube, rough_flow, sheared_gap, stress_factor
 from frbcli.film.roughness.flow_factors import CUT, LAST_STRESS, pressure_flow, shear_flow, shear_stress
-from frbcli.film.roughness.rough_gap import flowing_cube, rough_flow, sheared_gap, stress_factor
 
 SIGMA = 0.03  # over the clearance
 GAPS = (0.5, 0.9, 1.0, 2.0, 2.99, 3.01, 4.9, 5.1, 8.9, 9.1, 30.0)

@@ -16,11 +16,10 @@ from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, STATES, before_upstream
 from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
 from frbcli.film.cells.data import ALL_SIDES, BY_ENDS
-from frbcli.film.cells.film import VolumeFilm, gap_height
+from frbcli.film.cells.film import Motion, Storage, VolumeFilm, gap_height
 from frbcli.film.cells.gas.carry import BACKWARD, DOWNWARD, GIVEN, KEPT, ONWARD, OUT, PATHS, UPWARD, follow_oil
-from frbcli.film.cells.motion import Motion, Storage
-from frbcli.film.cells.tilted.data import TiltedVolumes, tilted_volumes
-from frbcli.film.cells.tilted.loads import film_loads
+from frbcli.film.cells.tilted.faces import film_loads
+from frbcli.film.cells.tilted.kernel import TiltedVolumes, tilted_volumes
 from frbcli.film.cells.tilted.steady_force import TiltedLand, _loads, tilted_film
 from frbcli.film.gap import AxialGroove, Hole, Section, gap_rate
 

@@ -13,7 +13,7 @@ import frbcli
 from frbcli.case.reading.load import case_from_dict
 from frbcli.cli.main import run as frb
 from frbcli.linear.modes import own_reduction
-from frbcli.scene.shafts.table import shaft_of
+from frbcli.scene.machine.turbocharger import shaft_of
 
 SPEEDS = [2.0, 80.0, 160.0]  # peaks between them are found
 MANY = 48  # free modes

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 from marches import in_two_bearings
 
-from frbcli.analysis.orders.order_tracking import order_track
+from frbcli.analysis.order_tracking import order_track
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.cycles.limit_cycles import limit_cycles
 from frbcli.linear.response import DOUBTFUL, Response, forced_motion, larger_semi_axis, response
 from frbcli.plot.machine.response import response_figure
-from frbcli.rotor.body import jeffcott_rotor
+from frbcli.rotor.assembly import jeffcott_rotor
 from frbcli.runs.run import runup
 
 MASS, JOURNALS, SHAFT, UNBALANCE, OUTER, INNER = 6.0, 0.1, 5e6, 3e-6, 4.0, 0.7

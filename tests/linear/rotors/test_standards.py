@@ -14,7 +14,7 @@ import frbcli
 from frbcli.case.reading.load import case_from_dict
 from frbcli.cli.main import run as frb
 from frbcli.linear.balance_quality import balance_quality, permissible_unbalance
-from frbcli.linear.vibration import api_limit, required_margin, vibration_limits, zone_limits
+from frbcli.linear.damped_modes import api_limit, required_margin, vibration_limits, zone_limits
 
 TURN = 2.0 * math.pi
 

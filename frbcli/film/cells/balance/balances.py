@@ -18,8 +18,7 @@ from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import wright_omega
 from frbcli.film.cells.balance.boundaries import BEND, PREFACTOR, STEEPNESS
-from frbcli.film.cells.balance.diffusion import spread_oil
-from frbcli.film.cells.balance.resting import rests
+from frbcli.film.cells.balance.clipped import spread_oil
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     FRACTION,
@@ -28,6 +27,7 @@ from frbcli.film.cells.balance.states import (
     PRESSURE_SLOPE,
     SOURCE,
     SOURCE_SLOPE,
+    rests,
 )
 from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES, UNASKED
 from frbcli.film.cells.data import (
@@ -71,7 +71,7 @@ from frbcli.film.cells.tilted.faces import (
     stored,
 )
 from frbcli.film.cells.tilted.motion import GridMotion, add_by_motion, gap_along
-from frbcli.film.roughness.rough_gap import flowing_cube, rough_flow, sheared_gap
+from frbcli.film.roughness.contact import flowing_cube, rough_flow, sheared_gap
 
 # Sums over the ends and the given cells: what flows in and out there, the net outflow through the ends and the net
 # supply by given cells and grooves; what channels of a ring bring net; free gas that comes in and leaves with the oil,

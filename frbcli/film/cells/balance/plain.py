@@ -15,9 +15,9 @@ from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balance.boundaries import BEND, EndSlope, end_outflow, end_slopes
 from frbcli.film.cells.balance.plain_diffusion import NO_DISTANCE, Spreads, spreads
 from frbcli.film.cells.balance.states import UPWIND, limited
+from frbcli.film.cells.film import Motion, Storage, gap_on
+from frbcli.film.cells.mesh.bores import bathed
 from frbcli.film.cells.mesh.grid import VolumeGrid
-from frbcli.film.cells.mesh.openings import bathed
-from frbcli.film.cells.motion import Motion, Storage, gap_on
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.roughness.flow_factors import pressure_flow, shear_flow
 

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from frbcli.arrays import Array
 from frbcli.film.cavitation.law import CellState
+from frbcli.film.cells.film import Motion, gap_on
+from frbcli.film.cells.mesh.bores import bathed
 from frbcli.film.cells.mesh.grid import VolumeGrid
-from frbcli.film.cells.mesh.openings import bathed
-from frbcli.film.cells.motion import Motion, gap_on
 from frbcli.film.gap import Section
 
 GAMMA, PECLET = 0.5, 3.0  # of (4.42) and (4.43)

@@ -12,6 +12,11 @@ L = b / 2 is of second order, but overshoots at fronts. Between these chooses th
 
 The oil fraction before the upstream cell is held at a guess while Newton's method solves: so the equations keep their
 two neighbours around, and their derivatives are exact. Oil that is compressed is no part of it, see balances.py.
+
+Columns of cells with constant oil: cavities at p_cav that turn with the oil, between others like them. Compiled.
+
+Nothing flows through the faces of such a column, whatever its cells hold, so that H theta stays what it was. Its cells
+feel no others, and Newton's step of each is a division. A film that empties consists mostly of them.
 """
 
 from __future__ import annotations
@@ -23,7 +28,7 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import ECCENTRICITY, LAW_NUMBERS, MOTION, SPEED, WHIRL, call_cells, call_follow
-from frbcli.film.cells.data import GIVEN_PRESSURE, UNKNOWN
+from frbcli.film.cells.data import CLOSED, GIVEN, GIVEN_PRESSURE, NO_CLIP, UNKNOWN
 
 # Layers of the states of the cells: of the law, the slopes by w last; the free gas that comes into the cell, and the
 # rate of its oil, as the law takes them, see balance.py in gas/, the free gas of the cell and how much of the incoming
@@ -172,3 +177,45 @@ def carried_at(t: float, t_n: float, before: float, forward: bool) -> tuple[floa
     by_upstream = 1.0 + by_before - by_across
     here, next_ = (by_upstream, by_across) if forward else (by_across, by_upstream)
     return theta, 0.5 if t > 1.0 else here, 0.5 if t_n > 1.0 else next_
+
+
+@compiled(inline=True)
+def rests(states: Array, i: int) -> bool:
+    """Whether the oil of column i stays constant."""
+    return bool(states[RESTS, i, 0] != 0.0)
+
+
+@compiled(inline=True)
+def _is_cavity(cells: Array, states: Array, p_cav: float, i: int) -> bool:
+    """Whether all cells of column i are at p_cav, whatever they hold, and gain no oil by themselves."""
+    for j in range(states.shape[2]):
+        if states[PRESSURE_SLOPE, i, j] != 0.0 or states[PRESSURE, i, j] != p_cav or cells[UNKNOWN, i, j] == 0.0:
+            return False
+        if states[SOURCE, i, j] != 0.0 or states[SOURCE_SLOPE, i, j] != 0.0 or states[FRACTION_SLOPE, i, j] == 0.0:
+            return False
+    return True
+
+
+@compiled(inline=True)
+def _passes_nothing(end: np.record, pressure: float) -> bool:
+    """Whether nothing flows through an end of a section next to cells of this pressure."""
+    return bool(end.kind == CLOSED or (end.kind == GIVEN and pressure == 0.0))
+
+
+@compiled()
+def find_resting(film: np.record, cells: Array, states: Array, still: bool, fields: Array) -> None:
+    """The layer RESTS of states (STATES, m, k) <- in which columns of a film the oil stays constant. still: whether its
+    cells turn with the oil. fields (m, k, n) <- 0 of columns that no longer do: nobody has solved for them."""
+    m, p_cav = states.shape[1], film.scales.cavitation
+    still = still and film.remembers and not film.carries_gas and film.roughness == 0.0 and film.clips == NO_CLIP
+    still = still and _passes_nothing(film.near, p_cav) and _passes_nothing(film.far, p_cav)
+    before, here = still and _is_cavity(cells, states, p_cav, m - 1), still and _is_cavity(cells, states, p_cav, 0)
+    for i in range(m):
+        behind = still and _is_cavity(cells, states, p_cav, i + 1 if i + 1 < m else 0)
+        rested, keeps = rests(states, i), before and here and behind
+        states[RESTS, i, 0] = 1.0 if keeps else 0.0
+        if rested and not keeps:
+            for j in range(fields.shape[1]):
+                for side in range(fields.shape[2]):
+                    fields[i, j, side] = 0.0
+        before, here = here, behind

@@ -16,7 +16,7 @@ from frbcli.film.cells.block_cyclic import UNKNOWN_SIDES, ring_solver
 from frbcli.film.cells.channels.channel import Channel, FeedHole
 from frbcli.film.cells.data import CHANNEL, EXCHANGE, FEED_HOLE, FEED_HOLES, UNKNOWN, Records, VolumeFilms
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.mesh.openings import hole_opening
+from frbcli.film.cells.mesh.bores import hole_opening
 
 IN_GROOVE = -1  # instead of a feed hole
 OPENNESS = 1e5  # of a feed hole over its gap, centred: the conductances between channel and film, and along the film

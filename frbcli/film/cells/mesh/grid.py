@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 
 from frbcli.arrays import Array
 from frbcli.film.cells.balance.boundaries import end_slopes
-from frbcli.film.cells.mesh.bores import Cells, around_bores
-from frbcli.film.cells.mesh.openings import Opening, groove_opening, hole_opening
+from frbcli.film.cells.mesh.bores import Cells, Opening, around_bores, groove_opening, hole_opening
 from frbcli.film.gap import LEAST, AxialGroove, Section, graded_ring, groove_pressure
 
 FINER_ENDS = 0.55  # share of Chebyshev's spacing: of 0.2 to 1 the most exact on 8 to 12 cells in the mean of 20 states

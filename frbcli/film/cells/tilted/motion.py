@@ -7,7 +7,7 @@ from typing import NamedTuple
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.cells.data import BY_ENDS
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.film import Motion
 
 
 class GridMotion(NamedTuple):

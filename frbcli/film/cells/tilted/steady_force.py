@@ -19,13 +19,11 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cells.film import VolumeFilm, VolumeSolution
-from frbcli.film.cells.linearised import LinearFilm, linear_cells, lying
+from frbcli.film.cells.film import Motion, Path, VolumeFilm, VolumeSolution
+from frbcli.film.cells.linearised import LinearFilm, film_at, film_changes, linear_cells, lying
 from frbcli.film.cells.loads import FilmLoads, GasBalance, OilBalance, Torque, pushed, pushing
 from frbcli.film.cells.mesh.grid import tilted_cells, volume_grid
-from frbcli.film.cells.motion import Motion, Path
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.steady_force import film_at, film_changes
 from frbcli.film.gap import Section, graded_ring
 from frbcli.film.rectangles.film import FieldSlopes, FilmForce
 

@@ -1,1 +1,0 @@
-"""Revolutions, orders and resonances."""

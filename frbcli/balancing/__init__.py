@@ -1,1 +1,0 @@
-"""Balancing by influence coefficients: correction masses from the synchronous motion of a run."""

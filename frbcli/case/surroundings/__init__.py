@@ -1,1 +1,0 @@
-"""What a rotor stands on and what acts on it besides its bearings."""

@@ -1,0 +1,110 @@
+"""`frb cases`: the shipped cases, to print and to copy.
+
+The hard cases on the terminal.
+"""
+
+from __future__ import annotations
+
+from operator import attrgetter
+from pathlib import Path
+
+import click
+
+from frbcli.case.reading.hard import hard_cases
+from frbcli.cli.common import SETTING, Terminal, output_options
+from frbcli.cli.files import CASE_FILE, check_outputs, force_option, forced
+from frbcli.cli.options import Command, complete_key
+from frbcli.columns import Column, Shown, table_of
+
+
+@click.command(cls=Command)
+@click.argument("names", nargs=-1, metavar="[NAME]...")
+@click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", shell_complete=complete_key,
+              help=f"{SETTING} Repeatable.")
+@click.option("-o", "--output", metavar="CASE.toml", type=CASE_FILE, help="Copy the case to this file.")
+@click.option("--hard", is_flag=True, help="List the hard cases instead of the others.")
+@force_option("Replace a file at -o.")
+@output_options
+def command(
+    names: tuple[str, ...], settings: tuple[str, ...], output: Path | None, hard: bool, terminal: Terminal
+) -> None:
+    """List the shipped cases; with NAME print that case's text, or copy it with -o FILE."""
+    if not names and (output is not None or settings):
+        raise click.UsageError("-o and --set need the NAME of a case.")
+    if len(names) > 1:
+        raise click.UsageError("One NAME at a time.")
+    if names:
+        _show(names[0], settings, output, hard, terminal)
+    elif hard:
+        list_hard(terminal)
+    else:
+        _list(terminal)
+
+
+def _show(name: str, settings: tuple[str, ...], output: Path | None, hard: bool, terminal: Terminal) -> None:
+    """Print a case or copy it."""
+    if hard:
+        pass
+    else:
+        pass
+    text = hard_text(name)
+    if settings:
+        from frbcli.case.reading.load import load_case_text
+
+        text = load_case_text(text, settings, name).source_text
+    if output is not None:
+        _write(text, output)
+        terminal.result(f"case: {output}")
+        terminal.remark(f"`frb check {output}` checks it.")
+    else:
+        terminal.text(text)
+    terminal.emit({"command": "cases", "case": name, "output": output, "text": text})
+
+
+def _list(terminal: Terminal) -> None:
+    from frbcli.case.reading.shipped import shipped_cases
+
+    cases = shipped_cases()
+    terminal.table("shipped cases", ("name", "title"), list(cases.items()))
+    terminal.remark(
+        "`frb cases NAME` prints a case, `frb cases NAME -o FILE` copies it.\n`frb cases --hard` lists hard cases."
+    )
+    terminal.emit({"command": "cases", "cases": [{"name": name, "title": title} for name, title in cases.items()]})
+
+
+def _write(text: str, output: Path) -> None:
+    """Write a case to a new file, with --force to any."""
+    from frbcli.results.write import NEW, write
+
+    check_outputs((output, NEW))
+    write(output, NEW, text, forced())
+
+
+LIST = "list"  # table of the terminal
+
+# Of a HardCase
+HARD_CASE = (
+    Column("name", "", "name of the hard case", shown=(Shown("case"), Shown("case", table=LIST))),
+    Column("topic", "", "topic"),
+    Column("hard", "", "difficulty", shown=(Shown("difficulty"), Shown("difficulty", table=LIST)), flat=False),
+    Column("command", "", "command that it is for", attrgetter("words"), flat=False),
+    Column("expected", "", "how it has to end", attrgetter("end"), shown=(Shown("ends", table=LIST),)),
+    Column("why", "", "cause of that end", flat=False),
+)
+
+
+def list_hard(terminal: Terminal) -> None:
+    """The table of all hard cases."""
+    table = table_of(HARD_CASE, hard_cases())
+    terminal.show("hard cases", table, LIST)
+    terminal.remark("`frb cases --hard NAME` prints one as a case file.")
+    terminal.emit({"command": "cases", "hard": table.documents()})
+
+
+def hard_text(name: str) -> str:
+    """The case file of a hard case: its shipped case with the settings put in. Raises InputError for an unknown name;
+    a case that has to be refused is given as its base and its settings."""
+    (hard,) = hard_cases([name])
+    settings = "".join(f"#   --set '{text}'\n" for text in hard.settings)
+    head = f"# {hard.hard}\n# The shipped case {hard.base} for `frb {hard.command}`, with\n{settings}"
+    return head + (hard.case().source_text if hard.end != "input-error" else "# which has to be refused.\n")

@@ -1,0 +1,328 @@
+"""Force and stiffness of a ball bearing from the displacement of its inner ring: plain functions, compiled in runs.
+
+A ball between raceway grooves (Harris, Rolling Bearing Analysis, chapter 7; Jones): its centre lies `u` along the axis
+and `v` outwards from the centre of the outer groove, the centre of the inner groove at
+
+    a = A sin(alpha_0) + z,    r = A cos(alpha_0) + x cos(psi) + y sin(psi)
+
+with the displacement (x, y, z) of the inner ring and the angle psi of the ball from the x-axis. Contacts are springs
+Q = K delta^1.5 along the lines of centres; the ball also bears its centrifugal force. Friction and gyroscopic moments
+are left out. The energy of contacts and balls is convex in all displacements, so that there is one equilibrium.
+
+`plain.py` has the same equations without their elimination; a test holds the two together.
+
+A ball bearing as the minimum of its energy, plainly: dense matrices of all displacements, no elimination.
+
+This is the naive way. It is slow and easy to read; `force.py` solves the same equations and a test holds the two
+together to round-off.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from frbcli.arrays import Array
+
+# Imbalance over the forces from which on one more step leaves the round-off alone, for its error is squared: of a ball,
+# and of the rings along the axis
+NEAR, NEAR_ALONG = 1e-7, 1e-6
+STEPS = 60  # at most, with those that are halved or bisected: mostly three, for balls ten
+ROPE = 3  # steps to a place near which a ball rests
+SMALLEST = 1e-9  # share of a step below which it is no longer halved
+REACH = 1e-5  # m, the longest first step along the axis; each further one may be twice as long
+KNOWN = 8  # numbers for each ball, see ball
+RINGS = 5  # numbers before them: the displacement z, x, y of the last call, and the derivatives of z by x and y
+BELOW = -0.5 * math.pi  # where the first ball stands at the cage angle 0: in the line of the weight
+
+
+class BallNumbers(NamedTuple):
+    """What a ball bearing is to the kernels, SI units.
+
+    points: places of balls around; share: balls of all rows for each place; axial, radial: distances A sin(alpha_0) and
+    A cos(alpha_0) of the groove centres without load; inner, outer: distances of the centre of a ball from the groove
+    centres where it touches; k_inner, k_outer: of the contacts, N/m^1.5; centrifugal: force of a ball over the square
+    of the speed of the shaft, N s^2; held: 1 if the rings are held along the axis, else 0; preload: on all rows in N,
+    or, of rings that are held, their axial displacement; cage: its speed over the shaft's, 0 for the mean over its
+    angle; thrust: what an axial load adds to the preload, over the square of the speed of the shaft, N s^2. """
+
+    points: int
+    share: float
+    axial: float
+    radial: float
+    inner: float
+    outer: float
+    k_inner: float
+    k_outer: float
+    centrifugal: float
+    held: float
+    preload: float
+    cage: float
+    thrust: float
+
+
+def ball_numbers(numbers: Array) -> BallNumbers:
+    """The bearing whose numbers (13,) are in an array."""
+    return BallNumbers(
+        int(numbers[0]), numbers[1], numbers[2], numbers[3], numbers[4], numbers[5], numbers[6], numbers[7], numbers[8],
+        numbers[9], numbers[10], numbers[11], numbers[12],
+    )  # fmt: skip
+
+
+def of_balls(of: BallNumbers, omega: float) -> tuple[float, float, float]:
+    """What all balls have alike: the share of the inner contact in the deflection of both in series, the centrifugal
+    force in N at omega rad/s, and how far off the outer groove's centre a ball rests on the outer ring alone, m."""
+    i, o = of.k_inner ** (-2.0 / 3.0), of.k_outer ** (-2.0 / 3.0)
+    centrifugal = of.centrifugal * omega * omega
+    return i / (i + o), centrifugal, of.outer + (centrifugal / of.k_outer) ** (2.0 / 3.0)
+
+
+def ball(
+    of: BallNumbers, a: float, r: float, share: float, centrifugal: float, rest: float, memory: Array, at: int
+) -> tuple[float, float, float, float, float]:
+    """A ball at rest between the centres of the outer groove, (0, 0), and of the inner one, (a, r), in m.
+
+    share, centrifugal, rest: see of_balls. memory: from place `at` on a, r, u, v of a ball at rest near by, and the
+    derivatives of u and v by a and r, u_a, u_r, v_a, v_r; zeros if not known. The values of this ball are left there.
+
+    Returns the force (a, r) in N with which the inner ring presses on the ball, and its derivative (aa, ar, rr) by the
+    place of the inner groove.
+
+    Newton's method on the balance of forces, whose matrix is positive definite while a raceway touches the ball; a step
+    is halved until the imbalance falls. The last step acts on place and force by their derivatives.
+    """
+    inner, outer, k_inner, k_outer = of.inner, of.outer, of.k_inner, of.k_outer
+    length = math.sqrt(a * a + r * r)
+    if centrifugal <= 0.0 and length <= inner + outer:
+        return _alone(a, r, outer, memory, at)
+    if centrifugal > 0.0 and a * a + (r - rest) * (r - rest) <= inner * inner:  # on the outer ring alone
+        return _alone(a, r, rest, memory, at)
+    by_a, by_r = a - memory[at], r - memory[at + 1]
+    u = memory[at + 2] + memory[at + 4] * by_a + memory[at + 5] * by_r
+    v = memory[at + 3] + memory[at + 6] * by_a + memory[at + 7] * by_r
+    outside = u * u + v * v > outer * outer
+    if not outside:
+        u, v = _near(of, a, r, length, share, centrifugal)
+    step_u = step_v = f_a = f_r = s_aa = s_ar = s_rr = h_uu = h_uv = h_vv = determinant = 0.0
+    least, size = math.inf, 1.0
+    for _ in range(STEPS):
+        t_u, t_v = u + step_u, v + step_v
+        i_a, i_r = a - t_u, r - t_v
+        l_i, l_o = math.sqrt(i_a * i_a + i_r * i_r), math.sqrt(t_u * t_u + t_v * t_v)
+        d_i, d_o = max(l_i - inner, 0.0), max(l_o - outer, 0.0)
+        root_i, root_o = k_inner * math.sqrt(d_i), k_outer * math.sqrt(d_o)
+        q_i, q_o = root_i * d_i, root_o * d_o
+        m_a, m_r, n_a, n_r = i_a / l_i, i_r / l_i, t_u / l_o, t_v / l_o
+        g_u, g_v = q_o * n_a - q_i * m_a, q_o * n_r - q_i * m_r - centrifugal
+        missed = math.sqrt(g_u * g_u + g_v * g_v)
+        if (missed >= least or d_i + d_o <= 0.0) and size > SMALLEST:
+            size, step_u, step_v = 0.5 * size, 0.5 * step_u, 0.5 * step_v
+            if outside:  # what is known does not help
+                u, v = _near(of, a, r, length, share, centrifugal)
+                outside, least, size, step_u, step_v = False, math.inf, 1.0, 0.0, 0.0
+            continue
+        u, v, least, size, f_a, f_r = t_u, t_v, missed, 1.0, q_i * m_a, q_i * m_r
+        along, across = 1.5 * root_i, q_i / l_i
+        s_aa = along * m_a * m_a + across * m_r * m_r
+        s_ar = (along - across) * m_a * m_r
+        s_rr = along * m_r * m_r + across * m_a * m_a
+        along, across = 1.5 * root_o, q_o / l_o
+        h_uu = s_aa + along * n_a * n_a + across * n_r * n_r
+        h_uv = s_ar + (along - across) * n_a * n_r
+        h_vv = s_rr + along * n_r * n_r + across * n_a * n_a
+        determinant = h_uu * h_vv - h_uv * h_uv
+        if determinant <= 0.0:
+            return _alone(a, r, rest, memory, at)
+        step_u = -(h_vv * g_u - h_uv * g_v) / determinant
+        step_v = -(h_uu * g_v - h_uv * g_u) / determinant
+        if missed <= NEAR * (q_i + q_o + centrifugal):
+            break
+    # the derivative with the ball eliminated: S - S H^-1 S
+    u_a, v_a = (h_vv * s_aa - h_uv * s_ar) / determinant, (h_uu * s_ar - h_uv * s_aa) / determinant
+    u_r, v_r = (h_vv * s_ar - h_uv * s_rr) / determinant, (h_uu * s_rr - h_uv * s_ar) / determinant
+    memory[at], memory[at + 1], memory[at + 2], memory[at + 3] = a, r, u + step_u, v + step_v
+    memory[at + 4], memory[at + 5], memory[at + 6], memory[at + 7] = u_a, u_r, v_a, v_r
+    return (
+        f_a - s_aa * step_u - s_ar * step_v, f_r - s_ar * step_u - s_rr * step_v,
+        s_aa - s_aa * u_a - s_ar * v_a, s_ar - s_aa * u_r - s_ar * v_r, s_rr - s_ar * u_r - s_rr * v_r,
+    )  # fmt: skip
+
+
+def _alone(a: float, r: float, v: float, memory: Array, at: int) -> tuple[float, float, float, float, float]:
+    """A ball without force on the inner ring, v m from the centre of the outer groove. See ball."""
+    for i in range(KNOWN):
+        memory[at + i] = 0.0
+    memory[at], memory[at + 1], memory[at + 3] = a, r, v
+    return 0.0, 0.0, 0.0, 0.0, 0.0
+
+
+def _near(of: BallNumbers, a: float, r: float, length: float, share: float, centrifugal: float) -> tuple[float, float]:
+    """u, v in m of a ball near its equilibrium, which it touches with both contacts. length: from (0, 0) to (a, r).
+
+    The contacts pull like a rope between the groove centres that the ball pushes aside by w: it is longer by
+    excess + bend w^2 / 2, and bears the share of the centrifugal force across it. Newton's method from above, where it
+    descends to w. The ball then lies at the distances from both centres that belong to its contacts' forces.
+    """
+    inner, outer, k_inner, k_outer = of.inner, of.outer, of.k_inner, of.k_outer
+    excess, bend = length - inner - outer, 1.0 / inner + 1.0 / outer
+    both, across, w = k_inner * share * math.sqrt(share), centrifugal * abs(a) / length, 0.0
+    if across > 0.0:
+        w = math.sqrt(math.sqrt(across / (both * bend * 0.5 * bend * math.sqrt(0.5 * bend))))
+        if excess > 0.0:
+            w = min(w, across / (both * bend * excess * math.sqrt(excess)))
+        else:
+            w = math.sqrt(w * w - 2.0 * excess / bend)
+        for _ in range(ROPE):
+            longer = max(excess + 0.5 * bend * w * w, 0.0)
+            root = both * bend * math.sqrt(longer)
+            w -= (root * longer * w - across) / (root * (longer + 1.5 * bend * w * w))
+    longer = max(excess + 0.5 * bend * w * w, 0.0)
+    pressed = both * longer * math.sqrt(longer) + centrifugal * max(r, 0.0) / length
+    l_o, l_i = outer + (pressed / k_outer) ** (2.0 / 3.0), inner + share * longer
+    if l_o + l_i <= length:
+        return l_o * a / length, l_o * r / length
+    along = 0.5 * (l_o * l_o - l_i * l_i + length * length) / length
+    aside = math.copysign(math.sqrt(max(l_o * l_o - along * along, 0.0)), a)
+    return (along * a - aside * r) / length, (along * r + aside * a) / length
+
+
+def rings(
+    of: BallNumbers, d_x: float, d_y: float, d_z: float, omega: float, cage: float, memory: Array
+) -> tuple[float, float, float, float, float, float, float, float, float]:
+    """All balls: the force (x, y, z) in N that holds the inner ring at a displacement in m, and its
+    derivative (xx, xy, yy, xz, yz, zz) in N/m.
+
+    omega: of the shaft, rad/s; cage: its angle, rad. memory: see ball_bearing_force.
+    """
+    share, centrifugal, rest = of_balls(of, omega)
+    a = of.axial + d_z
+    turn = 2.0 * math.pi / of.points
+    c, s, turn_c, turn_s = math.cos(BELOW + cage), math.sin(BELOW + cage), math.cos(turn), math.sin(turn)
+    f_x = f_y = f_z = k_xx = k_xy = k_yy = k_xz = k_yz = k_zz = 0.0
+    for j in range(of.points):
+        r, at = of.radial + d_x * c + d_y * s, RINGS + KNOWN * j
+        q_a, q_r, aa, ar, rr = ball(of, a, r, share, centrifugal, rest, memory, at)
+        f_x, f_y, f_z = f_x + q_r * c, f_y + q_r * s, f_z + q_a
+        k_xx, k_xy, k_yy = k_xx + rr * c * c, k_xy + rr * c * s, k_yy + rr * s * s
+        k_xz, k_yz, k_zz = k_xz + ar * c, k_yz + ar * s, k_zz + aa
+        c, s = c * turn_c - s * turn_s, s * turn_c + c * turn_s
+    n = of.share
+    return n * f_x, n * f_y, n * f_z, n * k_xx, n * k_xy, n * k_yy, n * k_xz, n * k_yz, n * k_zz
+
+
+def ball_bearing_force(
+    of: BallNumbers, d_x: float, d_y: float, omega: float, cage: float, memory: Array
+) -> tuple[float, float, float, float, float, float]:
+    """Force (x, y) in N on the inner ring at its displacement in m, and -dF/dd (xx, xy, yx, yy) in N/m,
+    both with the axial displacement at which the preload is balanced.
+
+    omega: of the shaft, rad/s; cage: its angle in rad, by which the first ball stands off the -y axis. memory:
+    (RINGS + KNOWN points,) what the last call left, zeros at first: the displacement of the ring, and what is known of
+    each ball. The result does not depend on it.
+
+    The axial force rises with the axial displacement: Newton's method, or half of the interval that holds the answer
+    where its step leaves it or the imbalance has not been halved.
+    """
+    if of.held:
+        f_x, f_y, _, xx, xy, yy, _, _, _ = rings(of, d_x, d_y, of.preload, omega, cage, memory)
+        return -f_x, -f_y, xx, xy, xy, yy
+    d_z = memory[0] + memory[3] * (d_x - memory[1]) + memory[4] * (d_y - memory[2])
+    low, high, last, reach = -math.inf, math.inf, math.inf, REACH
+    preload = of.preload + of.thrust * omega * omega
+    for _ in range(STEPS):
+        f_x, f_y, f_z, xx, xy, yy, xz, yz, zz = rings(of, d_x, d_y, d_z, omega, cage, memory)
+        missed = f_z - preload
+        step = reach if missed < 0.0 else -reach
+        if zz > 0.0 and abs(missed) < zz * reach:
+            step = -missed / zz
+        if abs(missed) <= NEAR_ALONG * preload:
+            break
+        if missed < 0.0:
+            low = d_z
+        else:
+            high = d_z
+        if math.isfinite(high - low) and (abs(missed) > 0.5 * last or not low < d_z + step < high):
+            step = 0.5 * (low + high) - d_z
+        d_z, last, reach = d_z + step, abs(missed), 2.0 * reach
+    x, y = (xz / zz, yz / zz) if zz > 0.0 else (0.0, 0.0)
+    memory[0], memory[1], memory[2], memory[3], memory[4] = d_z + step, d_x, d_y, -x, -y
+    return -f_x - xz * step, -f_y - yz * step, xx - x * xz, xy - x * yz, xy - x * yz, yy - y * yz
+
+
+MICROMETRE = 1e-6
+
+
+@dataclass(frozen=True)
+class PlainRings:
+    """The bearing at rest. displacement: (3,) of the inner ring, m; places: (n, 2) u and v of the balls, m; force:
+    (2,) on the inner ring, N; stiffness: (2, 2) -dF/dd under the preload, N/m; energy: of contacts, preload and
+    centrifugal forces, J."""
+
+    displacement: Array
+    places: Array
+    force: Array
+    stiffness: Array
+    energy: float
+
+
+def solve_plain(of: BallNumbers, displacement: Array, omega: float, cage: float = 0.0) -> PlainRings:
+    """The bearing at a displacement (x, y) in m and a speed in rad/s; cage: its angle in rad."""
+    from scipy.optimize import minimize
+
+    psi = BELOW + cage + 2.0 * np.pi * np.arange(of.points) / of.points
+    free = np.arange(3 if of.held else 2, 3 + 2 * of.points)
+    start = np.zeros(3 + 2 * of.points)
+    start[:2], start[2] = displacement, of.preload if of.held else 0.0
+    start[3::2], start[4::2] = 0.0, of.outer + MICROMETRE
+
+    def at(q: Array) -> tuple[float, Array, Array]:
+        everything = start.copy()
+        everything[free] = start[free] + MICROMETRE * q
+        return _energy(of, psi, everything, of.centrifugal * omega**2)
+
+    scaled = minimize(
+        lambda q: at(q)[0], np.zeros(len(free)), method="trust-exact",
+        jac=lambda q: MICROMETRE * at(q)[1][free],
+        hess=lambda q: MICROMETRE**2 * at(q)[2][np.ix_(free, free)],
+        options={"gtol": 1e-15, "maxiter": 500},
+    ).x  # fmt: skip
+    for _ in range(3):  # beyond what differences of energies resolve
+        _, gradient, matrix = at(scaled)
+        scaled = scaled - np.linalg.lstsq(matrix[np.ix_(free, free)], gradient[free], rcond=None)[0] / MICROMETRE
+    energy, gradient, matrix = at(scaled)
+    inner, coupled = matrix[np.ix_(free, free)], matrix[free, :2]
+    stiffness = matrix[:2, :2] - coupled.T @ np.linalg.lstsq(inner, coupled, rcond=None)[0]
+    start[free] += MICROMETRE * scaled
+    return PlainRings(start[:3], start[3:].reshape(-1, 2), -gradient[:2], stiffness, energy)
+
+
+def _energy(of: BallNumbers, psi: Array, q: Array, centrifugal: float) -> tuple[float, Array, Array]:
+    """Energy in J with its gradient and matrix by q = (x, y, z, u_0, v_0, u_1, ...)."""
+    size = len(q)
+    energy, gradient, matrix = -float(of.preload) * q[2] * (1 - of.held), np.zeros(size), np.zeros((size, size))
+    gradient[2] -= of.preload * (1 - of.held)
+    for j, angle in enumerate(psi):
+        u, v = 3 + 2 * j, 4 + 2 * j
+        energy -= of.share * centrifugal * q[v]
+        gradient[v] -= of.share * centrifugal
+        ring = np.zeros((2, size))
+        ring[0, 2], ring[1, 0], ring[1, 1] = 1.0, np.cos(angle), np.sin(angle)
+        ball = np.zeros((2, size))
+        ball[0, u] = ball[1, v] = 1.0
+        centre = np.array([of.axial, of.radial])
+        for k, touch, slope, zero in (
+            (of.k_outer, of.outer, ball, np.zeros(2)), (of.k_inner, of.inner, ring - ball, centre),
+        ):  # fmt: skip
+            line = zero + slope @ q
+            length = np.hypot(*line)
+            if length <= touch:
+                continue
+            normal, delta = line / length, length - touch
+            energy += of.share * 0.4 * k * delta**2.5
+            gradient += of.share * k * delta**1.5 * normal @ slope
+            along, across = np.outer(normal, normal), np.eye(2) - np.outer(normal, normal)
+            matrix += of.share * k * slope.T @ (1.5 * delta**0.5 * along + delta**1.5 / length * across) @ slope
+    return energy, gradient, matrix
