@@ -43,11 +43,9 @@ def command(
 
 def _show(name: str, settings: tuple[str, ...], output: Path | None, hard: bool, terminal: Terminal) -> None:
     """Print a case or copy it."""
-    if hard:
-        pass
-    else:
-        pass
-    text = hard_text(name)
+    from frbcli.case.reading.shipped import find_shipped
+
+    text = hard_text(name) if hard else find_shipped(name)
     if settings:
         from frbcli.case.reading.load import load_case_text
 

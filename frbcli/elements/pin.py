@@ -1,8 +1,8 @@
 """Pins of semi-floating rings and cartridges: they act on the turning of a ring alone.
 
 M = -(K (phi - phi_0) + C phi') beyond the play phi_0 to one side, K = k r^2 and C = c r^2 of a pin at the radius r, as
-long as it pushes the ring back, and 0 within the play; solve/pin.py solves it in a stage of the time loop. At rest the
-drag of its films holds a ring against its pin. """
+long as it pushes the ring back, and 0 within the play; solve/inputs.py solves it in a stage of the time loop. At rest
+the drag of its films holds a ring against its pin. """
 
 from __future__ import annotations
 
@@ -45,8 +45,8 @@ class PinElement(MachineElement):
 
 
 def pin_rows(pins: Sequence[Pin | None]) -> Array:
-    """(rings, 4) PLAY, STIFFNESS, DAMPING and RADIUS of solve/pin.py of the pins of all rings; without rows if there is
-    none."""
+    """(rings, 4) PLAY, STIFFNESS, DAMPING and RADIUS of solve/inputs.py of the pins of all rings; without rows if there
+    is none."""
     if not any(pins):
         return np.zeros((0, 4))
     return np.array([(0.0,) * 4 if pin is None else _row(pin) for pin in pins])

@@ -21,7 +21,7 @@ from frbcli.errors import input_error
 from frbcli.plot.style import Picture, new_figure, styled, wrap_title
 
 PICTURES = {  # class of a result: module in this room, and its function
-    "AccuracyLadder": "accuracy:accuracy_figure",
+    "AccuracyLadder": "sweep:accuracy_figure",
     "AgainstMeasured": "compare:against_figure",
     "BallSheet": "machine.bearing:ball_figure",
     "BearingSheet": "machine.bearing:bearing_figure",
@@ -35,7 +35,7 @@ PICTURES = {  # class of a result: module in this room, and its function
     "Response": "machine.response:response_figure",
     "Run": "run.summary:summary_figure",
     "Stability": "machine.modes:campbell_figure",
-    "StabilityMap": "machine.stability_map:stability_map_figure",
+    "StabilityMap": "machine.maps:stability_map_figure",
     "Sweep": "sweep:sweep_figure",
     "ThrustSheet": "machine.thrust:thrust_figure",
 }

@@ -69,7 +69,7 @@ def grid_angle(system: System, state: State, film: int, angle: float) -> float:
 class Samples:
     """States of a run at k output times, SI: times (k,); displacements q, velocities v (k, n); rotation of the rotor.
 
-    noted (k, n + NOTES films): see advance_watched of solve/watched.py, without columns if nothing is asked for that
+    noted (k, n + NOTES films): see advance_watched of solve/time_loop.py, without columns if nothing is asked for that
     needs it.
     """
 
@@ -191,7 +191,7 @@ def film_forces(rotor: LinearRotor, samples: Samples) -> Array:
 
 
 def _torques(system: System, films: FilmNumbers, samples: Samples, forces: Array) -> tuple[Array, Array]:
-    """(k, films) torque on the journals in N m, as in spin_up of solve/ring_spin.py, and power in W."""
+    """(k, films) torque on the journals in N m, as in spin_up of solve/inputs.py, and power in W."""
     n, count = system.rotor.size, len(system.names)
     total, slip = (_speeds(system, samples, row) for row in (SUM, SLIP))
     drag = samples.noted[:, n + DRAG * count : n + (DRAG + 1) * count]

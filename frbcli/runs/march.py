@@ -133,7 +133,7 @@ class March:
         self._q, self._v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
         self._oil = np.zeros((rows, len(system.remembering)))
         self._output = LoopOutput(self._q, self._v, self._oil, self._heat.buffer(rows))
-        # In addition to the motion, if the run records more of the films than follows from it: see solve/watched.py.
+        # In addition to the motion, if the run records more of the films than follows from it: see solve/time_loop.py.
         self._watches = self._inputs.limited or any(kind in OF_THE_STEPS for kind in recorded(case))
         self._watches |= brakes(system)
         notes = system.rotor.size + NOTES * len(system.names) if self._watches else 0

@@ -162,7 +162,7 @@ class System:
     each film, see FilmPlace; turning: see RotorData; drags: eta R^3 B / C of each whole bearing in N m s, the Couette
     torque per slip and drag_integral; ring_count: of rings that turn; laws: names of the films' cavitation models;
     torque: see FilmModel; own_length: see length, 0 of a machine with films; asperities: of rough surfaces; pins:
-    (rings or 0, PIN) of the rings, see solve/pin.py; shell: in which smooth surfaces rest where nothing else carries
+    (rings or 0, PIN) of the rings, see solve/inputs.py; shell: in which smooth surfaces rest where nothing else carries
     them, None where contact ends a run; free_speed: whether the rotor's speed is free; its angle then comes before the
     angles of the rings. """
 
