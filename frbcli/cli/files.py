@@ -57,7 +57,8 @@ class OutputFile(click.Path):
         """The path. Fails the option for a name with another end."""
         path = super().convert(value, param, ctx)
         if self.suffix and Path(os.fsdecode(path)).suffix.lower() != self.suffix:
-            self.fail(f"{os.fsdecode(path)!r} has to end with {self.suffix}.", param, ctx)
+            name = f"{Path(os.fsdecode(path)).stem}{self.suffix}"
+            self.fail(f"{os.fsdecode(path)!r} has to end with {self.suffix}. Write -o {name}.", param, ctx)
         return path
 
 
