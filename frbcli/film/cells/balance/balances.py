@@ -80,7 +80,7 @@ from frbcli.film.roughness.contact import flowing_cube, rough_flow, sheared_gap
 INFLOW, OUTFLOW, ENDS_NET, SUPPLY_NET, CHANNELS_NET, GAS_IN, GAS_OUT, GAS_RELEASED, CREATED, FILLING, FLOWS = range(11)
 
 
-COLUMNS = 8  # that are balanced at a time: what they pass to each other stays near the processor
+COLUMNS = 32  # that are balanced at a time: fewer cost a film of the time loop up to a twentieth in calls
 # Rows of these columns, one cell after the other, a column behind: FaceFlows around by pressures and by the surfaces,
 # then those along, which are 0 into a column.
 PRESSED, DRAWN, RAISED, FLOW_ROWS = range(0, 16, 4)
