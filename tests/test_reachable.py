@@ -54,8 +54,12 @@ def read(file: Path) -> tuple[str, Module]:
             module.always += [ast.Expr(decorator) for decorator in statement.decorator_list]
         elif isinstance(statement, ast.Assign | ast.AnnAssign | ast.AugAssign):
             targets = statement.targets if isinstance(statement, ast.Assign) else [statement.target]
-            for node in (node for target in targets for node in ast.walk(target) if isinstance(node, ast.Name)):
-                module.definitions[node.id].append(statement)
+            names = [node for target in targets for node in ast.walk(target) if isinstance(node, ast.Name)]
+            for node in names:
+                if isinstance(node.ctx, ast.Store):
+                    module.definitions[node.id].append(statement)
+            if not any(isinstance(node.ctx, ast.Store) for node in names):  # of an attribute
+                module.always.append(statement)
         elif not isinstance(statement, ast.Import | ast.ImportFrom):
             module.always.append(statement)
     return name, module

@@ -141,7 +141,7 @@ class Case(Model):
 
     def _repr_html_(self) -> str:
         """In a notebook: its values in SI and as they are written."""
-        from frbcli.case.reading.shipped import values  # it is made of cases
+        from frbcli.case.reading.listing import values  # it is made of cases
 
         rows = [(each.key, each.value, each.unit, each.shown if each.unit else "") for each in values(self)]
         return html_table(self.heading, ("key", "SI", "", "reads"), rows, len(rows))

@@ -1,20 +1,14 @@
-"""`frb cases`: the shipped cases, to print and to copy.
-
-The hard cases on the terminal.
-"""
+"""`frb cases`: the shipped cases, to print and to copy."""
 
 from __future__ import annotations
 
-from operator import attrgetter
 from pathlib import Path
 
 import click
 
-from frbcli.case.reading.hard import hard_cases
 from frbcli.cli.common import SETTING, Terminal, output_options
 from frbcli.cli.files import CASE_FILE, check_outputs, force_option, forced
 from frbcli.cli.options import Command, complete_key
-from frbcli.columns import Column, Shown, table_of
 
 
 @click.command(cls=Command)
@@ -36,6 +30,8 @@ def command(
     if names:
         _show(names[0], settings, output, hard, terminal)
     elif hard:
+        from frbcli.cli.hard import list_hard
+
         list_hard(terminal)
     else:
         _list(terminal)
@@ -45,7 +41,12 @@ def _show(name: str, settings: tuple[str, ...], output: Path | None, hard: bool,
     """Print a case or copy it."""
     from frbcli.case.reading.shipped import find_shipped
 
-    text = hard_text(name) if hard else find_shipped(name)
+    if hard:
+        from frbcli.cli.hard import hard_text
+
+        text = hard_text(name)
+    else:
+        text = find_shipped(name)
     if settings:
         from frbcli.case.reading.load import load_case_text
 
@@ -76,33 +77,3 @@ def _write(text: str, output: Path) -> None:
 
     check_outputs((output, NEW))
     write(output, NEW, text, forced())
-
-
-LIST = "list"  # table of the terminal
-
-# Of a HardCase
-HARD_CASE = (
-    Column("name", "", "name of the hard case", shown=(Shown("case"), Shown("case", table=LIST))),
-    Column("topic", "", "topic"),
-    Column("hard", "", "difficulty", shown=(Shown("difficulty"), Shown("difficulty", table=LIST)), flat=False),
-    Column("command", "", "command that it is for", attrgetter("words"), flat=False),
-    Column("expected", "", "how it has to end", attrgetter("end"), shown=(Shown("ends", table=LIST),)),
-    Column("why", "", "cause of that end", flat=False),
-)
-
-
-def list_hard(terminal: Terminal) -> None:
-    """The table of all hard cases."""
-    table = table_of(HARD_CASE, hard_cases())
-    terminal.show("hard cases", table, LIST)
-    terminal.remark("`frb cases --hard NAME` prints one as a case file.")
-    terminal.emit({"command": "cases", "hard": table.documents()})
-
-
-def hard_text(name: str) -> str:
-    """The case file of a hard case: its shipped case with the settings put in. Raises InputError for an unknown name;
-    a case that has to be refused is given as its base and its settings."""
-    (hard,) = hard_cases([name])
-    settings = "".join(f"#   --set '{text}'\n" for text in hard.settings)
-    head = f"# {hard.hard}\n# The shipped case {hard.base} for `frb {hard.command}`, with\n{settings}"
-    return head + (hard.case().source_text if hard.end != "input-error" else "# which has to be refused.\n")

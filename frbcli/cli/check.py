@@ -15,7 +15,7 @@ from frbcli.columns import document, documents, table_of
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from frbcli.case.reading.shipped import Value as ListedValue
+    from frbcli.case.reading.listing import Value as ListedValue
     from frbcli.case.schema import Case
     from frbcli.rotor.loads import SpeedProfile
     from frbcli.runs.second_run import TriedError
@@ -36,7 +36,7 @@ BY_CELLS_WITH_RINGS = "machines with rings have 0.1 to 8 times the error of thei
 @output_options
 def command(case: Case, everything: bool, terminal: Terminal) -> None:
     """Validate CASE; show what it amounts to and the plan: what will be modelled, what is left out, and why."""
-    from frbcli.case.reading.shipped import values
+    from frbcli.case.reading.listing import values
     from frbcli.scene.cost import compile_B
     from frbcli.scene.cost_limits import require_affordable
     from frbcli.scene.machine.findings import FILM_OPERATION, findings, operating_points, remarks

@@ -274,7 +274,7 @@ def complete_case(_: click.Context, __: click.Parameter, incomplete: str) -> lis
 
 def complete_key(context: click.Context, _: click.Parameter, incomplete: str) -> list[CompletionItem]:
     """Keys of the case given earlier on the line, else the most usual ones."""
-    from frbcli.case.reading.shipped import values
+    from frbcli.case.reading.listing import values
 
     case = _case_on_line(context)
     keys = list(COMMON) if case is None else [value.key for value in values(case)]

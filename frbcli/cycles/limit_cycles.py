@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from frbcli.case.reading.shipped import machine_fault
+from frbcli.case.reading.listing import machine_fault
 from frbcli.case.schema import Case
 from frbcli.compiled import working_time
 from frbcli.cycles.branch import first_place, follow_branch

@@ -23,8 +23,8 @@ from frbcli import __version__
 from frbcli.analysis.signals import films
 from frbcli.analysis.subsynchronous import with_whirl_names
 from frbcli.arrays import Array
+from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case_text
-from frbcli.case.reading.shipped import values
 from frbcli.case.run import speed_unit_of
 from frbcli.errors import FrbError, InputError, input_error, printable
 from frbcli.plot.run.motion import displacement_figure, eccentricity_figure

@@ -22,8 +22,8 @@ from frbcli.analysis.resonance import Ridges, ridge_speeds, ridges
 from frbcli.analysis.signals import bearing_clearance
 from frbcli.analysis.spectrum import window_length
 from frbcli.arrays import Array, Truths
-from frbcli.case.reading.shipped import machine_fault
-from frbcli.case.reading.shipped import values as listed
+from frbcli.case.reading.listing import machine_fault
+from frbcli.case.reading.listing import values as listed
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, Table, Tabular, table_of
 from frbcli.errors import Fault, FrbError, InputError, did_you_mean, input_error

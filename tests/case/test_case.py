@@ -10,8 +10,9 @@ import pytest
 from case_texts import SMALL, TURBOCHARGER, faults_of
 
 from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
+from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case, load_case_text
-from frbcli.case.reading.shipped import shipped_cases, shipped_names, values
+from frbcli.case.reading.shipped import shipped_cases, shipped_names
 from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
 from frbcli.case.schema import Case, json_schema
 from frbcli.errors import InputError

@@ -11,9 +11,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.reading.settings import to_toml
-from frbcli.case.reading.shipped import find_shipped, shipped_names, values
+from frbcli.case.reading.shipped import find_shipped, shipped_names
 from frbcli.case.reading.tables import key_lines
 from frbcli.case.schema import Case, json_schema
 from frbcli.errors import InputError

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
 from frbcli.case.reading.ross import RossElement, _rotor
 from frbcli.case.reading.settings import to_toml
-from frbcli.case.reading.shipped import values
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.linear.modes import natural_modes

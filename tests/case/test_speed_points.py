@@ -12,8 +12,8 @@ import pytest
 import frbcli
 from frbcli.analysis.measured import Measurement, measured_run
 from frbcli.analysis.order_tracking import order_track
+from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import case_from_dict, load_case_text
-from frbcli.case.reading.shipped import values
 from frbcli.errors import InputError
 from frbcli.runs.run import rundown, runup
 from frbcli.scene.course import default_speeds

@@ -65,8 +65,9 @@ def test_openings_that_turn_let_the_mean_over_their_angle_out() -> None:
         for angle in np.linspace(0.0, math.pi / 3.0, 12, endpoint=False):
             c, s = math.cos(angle), math.sin(angle)
             d = c * x + s * y, c * y - s * x
-            solution = FilmSolver(film).steady(Motion(d, (0.0, 0.0), thicker * omega))
-            leaving.append(outflow(film, d, film.pressure(solution.state)) / thicker)
+            turning_journal = Motion(d, (0.0, 0.0), thicker * omega)
+            solution = FilmSolver(film).steady(turning_journal)
+            leaving.append(outflow(film, turning_journal, film.pressure(solution.state)) / thicker)
         motion = np.array([[x, y, 0.5 * omega * y, -0.5 * omega * x]])
         found = films.clearances[0] * mean_end_flows(end, motion, np.array([omega]), thicker)  # type: ignore[arg-type]
         assert found == pytest.approx(np.mean(leaving), rel=6e-3)

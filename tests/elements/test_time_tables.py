@@ -13,8 +13,8 @@ from scipy.io import savemat, wavfile
 from scipy.signal import lsim
 
 import frbcli
+from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
-from frbcli.case.reading.shipped import values
 from frbcli.cycles.limit_cycles import limit_cycles
 from frbcli.errors import InputError
 from frbcli.linear.response import response

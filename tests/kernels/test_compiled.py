@@ -159,7 +159,7 @@ def test_every_kernel_of_the_package_is_compiled_so() -> None:
 
 
 # Touch, Rub, Values, Slopes: records and tuples of numbers.
-NUMBERS = re.compile(r"Touch|Rub|(tuple\[)?((float|int|bool|None|\.\.\.|Values|Slopes)(, )?)+\]?")
+NUMBERS = re.compile(r"Touch|Rub|GridMotion|(tuple\[)?((float|int|bool|None|\.\.\.|Values|Slopes)(, )?)+\]?")
 
 
 def kernels(folder: Path) -> Iterator[tuple[str, str, str, set[str]]]:
@@ -196,7 +196,7 @@ def test_functions_chosen_by_types_become_no_machine_code_by_themselves() -> Non
     """numba compiles them once more than they are used, to know what they return, also those put into their callers."""
     files = Path(frbcli.__file__).parent.rglob("*.py")
     chosen = [one for file in files for one in re.findall(r"(?m)^@overload\(.*", file.read_text(encoding="utf-8"))]
-    assert '@overload(carry_heat, jit_options=AS_KERNELS, inline="always")' in chosen
+    assert '@overload(end_flow, jit_options=AS_KERNELS, inline="always")' in chosen
     assert [one for one in chosen if "jit_options=AS_KERNELS" not in one] == []
 
 

@@ -23,8 +23,8 @@ from types import FrameType
 
 import numpy as np
 
+from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case
-from frbcli.case.reading.shipped import values
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.errors import FrbError

@@ -28,8 +28,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case
-from frbcli.case.reading.shipped import values
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError, RunFileError
 from frbcli.results.store import read_run

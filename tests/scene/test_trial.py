@@ -86,7 +86,7 @@ def test_a_trial_tells_one_to_five_times_the_true_error() -> None:
     fine = replace(trial.plan, cells=(88, 10), tolerance=3e-5)
     own, finer, exact = (eccentricities(case, trial, plan) for plan in (trial.plan, trial.finer, fine))
     # which is found at all output times here, at 192 of them there
-    assert found.error == pytest.approx(tried.SAFETY * float(np.abs(own - finer).max()), rel=0.02)
+    assert found.error == pytest.approx(tried.SAFETY_OF_TRIALS * float(np.abs(own - finer).max()), rel=0.02)
     true = float(np.abs(own - exact).max())
     assert true < found.error < 5.0 * true
     assert expected_error(trial.plan).eccentricity > 4.0 * true  # what the number of cells alone tells

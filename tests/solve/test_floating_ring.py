@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from frbcli.arrays import Array
+from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case, load_case_text
-from frbcli.case.reading.shipped import values
 from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.ring_speed import concentric_ratios

@@ -17,7 +17,7 @@ from synthetic_run import CLEARANCE, Rotor, make_run
 import frbcli
 from frbcli.analysis.measured import Measurement, measured_run
 from frbcli.analysis.resonance import ridge_speeds, ridges
-from frbcli.case.reading.shipped import machine_fault, values
+from frbcli.case.reading.listing import machine_fault, values
 from frbcli.cli.main import frb
 from frbcli.cycles.stability_map import Across
 from frbcli.errors import InputError

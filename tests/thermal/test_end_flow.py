@@ -38,7 +38,7 @@ def test_end_flow_is_that_of_fine_cells(eccentricity: float, pressure: float) ->
     assert isinstance(flow, TableEndFlow)
     w = 0.5 * omega * np.array([d[1], -d[0]])
     found = bearing.clearance * end_flow(flow, *d, *w, 1.0)
-    assert found == pytest.approx(outflow(film, motion.d, solution.state.pressure), rel=5e-3, abs=1e-12)
+    assert found == pytest.approx(outflow(film, motion, solution.state.pressure), rel=5e-3, abs=1e-12)
 
 
 def test_end_flow_of_a_short_film_is_its_closed_form() -> None:
@@ -61,4 +61,4 @@ def test_end_flow_between_axial_grooves_is_that_of_fine_cells() -> None:
     motion = Motion((0.3, -0.4), (0.0, 0.0), omega)
     w = 0.5 * omega * np.array([d[1], -d[0]])
     found = system.clearances[0] * end_flow(flow, *d, *w, 1.0)
-    assert found == pytest.approx(outflow(film, motion.d, FilmSolver(film).steady(motion).state.pressure), rel=0.02)
+    assert found == pytest.approx(outflow(film, motion, FilmSolver(film).steady(motion).state.pressure), rel=0.02)

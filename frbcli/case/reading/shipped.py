@@ -1,28 +1,13 @@
-"""The shipped cases.
-
-A case as a flat list of its values, for tables, and which of its keys are numbers of the machine.
-"""
+"""The shipped cases."""
 
 from __future__ import annotations
 
-import re
 import tomllib
-from collections.abc import Iterator
-from dataclasses import dataclass
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import Any
 
-from pydantic.fields import FieldInfo
-
-from frbcli.case.model import Model, unit_of
-from frbcli.case.reading.settings import parse
-from frbcli.case.rules.film_checks import OF_SPRING, WITH_DEFAULT
-from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, did_you_mean
-from frbcli.film.cavitation import table
-from frbcli.units import NUMBER, display, readable
 
 
 def shipped_cases() -> dict[str, str]:
@@ -70,97 +55,3 @@ def shipped_folder() -> Traversable:
     package = files("frbcli")
     installed = package.joinpath("shipped_cases")
     return installed if installed.is_dir() else Path(str(package)).parent / "cases"
-
-
-MOST_LISTED = 12  # numbers of a list; of a table from a file only the count is listed
-
-
-@dataclass(frozen=True)
-class Value:
-    """One value of a case. key: as in the file; value: SI number, text, or whole number; unit: SI, "" for none; bare:
-    whether it was written without its unit, and so taken as SI."""
-
-    key: str
-    value: float | int | str
-    unit: str = ""
-    shown: str = ""
-    bare: bool = False
-
-
-def values(case: Case) -> tuple[Value, ...]:
-    """Every value of `case` that is set, by itself or by default, in the order of the case file."""
-    return tuple(value for value in _values("", case, parse(case.source_text)) if not _is_idle(value.key, case))
-
-
-def _values(prefix: str, model: Model, written: Any) -> Iterator[Value]:
-    for name, field in type(model).model_fields.items():
-        key = field.alias or name
-        here = written.get(key) if isinstance(written, dict) else None
-        yield from _one(f"{prefix}{key}", getattr(model, name), field, here)
-
-
-def _one(key: str, content: Any, field: FieldInfo, written: Any) -> Iterator[Value]:
-    """written: the same value in the text of the case, None where it is not there."""
-    if content is None or content == () or content == "":
-        return
-    if isinstance(content, Model):
-        yield from _values(f"{key}.", content, written)
-    elif isinstance(content, tuple) and isinstance(written, dict) and hasattr(content[0], "place"):
-        yield from _by_place(key, content, written)
-    elif isinstance(content, tuple):
-        if len(content) > MOST_LISTED and isinstance(content[0], float):
-            yield Value(key, len(content), "", f"{len(content)} values")
-            return
-        both = isinstance(written, dict) and len(content) > 1  # one table for both ends of a cartridge
-        single = both or (key in ("bearing", "base") and len(content) == 1)
-        each = written if isinstance(written, list) else [written] * len(content)
-        for index, (item, its_text) in enumerate(zip(content[:1] if both else content, each, strict=not both)):
-            yield from _one(key if single else f"{key}.{index}", item, field, its_text)
-    elif isinstance(content, float):
-        unit = unit_of(field) or NUMBER
-        si = "" if unit == NUMBER else readable(unit)
-        yield Value(key, content, si, display(content, unit), bool(si) and isinstance(written, int | float))
-    else:
-        yield Value(key, content, "", str(content))
-
-
-def _by_place(key: str, items: tuple[Any, ...], written: dict[str, Any]) -> Iterator[Value]:
-    """Values of a list of models that is written as a table by their places."""
-    for item in items:
-        fields = type(item).model_fields
-        (name,) = fields.keys() - {"place"}
-        yield from _one(f"{key}.{item.place}", getattr(item, name), fields[name], written.get(item.place))
-
-
-def _is_idle(key: str, case: Case) -> bool:
-    """Whether a key belongs to a cavitation or contact model that the case does not use."""
-    section, _, rest = key.partition(".")
-    if section == "contact":
-        return rest in (OF_SPRING if case.contact.rough else WITH_DEFAULT)
-    model = rest.partition(".")[0]
-    return section == "film" and model in table.names() and model not in case.cavitations
-
-
-OF_THE_RUN = ("name", "title", "confirm", "speed", "motion", "start", "accuracy", "output")
-TABLES = tuple(
-    key for key in (field.alias or name for name, field in Case.model_fields.items()) if key not in OF_THE_RUN
-)
-# Keys of these tables that are no numbers of the machine: of the reduction of its rotor, of kinematic tests, of the
-# course and the end of a run.
-OTHERS = re.compile(
-    r"rotor\.cutoff|drive\.(start|to|duration|down_duration|reaction)|.*\.ramp|.*\.clearance_steps\..*\.time|"
-    r".*\.loss\.time|thermal\.hottest_film|contact\.eccentricity"
-)
-
-_NUMBERED = re.compile(r"\.\d+(?=\.|$)")
-
-
-def machine_fault(key: str, option: str) -> Fault | None:
-    """Why a key cannot be varied as a number of the machine; None if it is one. option: where it was given."""
-    table = key.partition(".")[0].strip()
-    if table in TABLES and not OTHERS.fullmatch(_NUMBERED.sub(".0", key.strip())):
-        return None
-    problem = "is no number of the machine: it is a setting of the run or of its computation."
-    tables = ", ".join(f"[{name}]" for name in TABLES[:-1])
-    remedy = f"Vary a key of {tables} or [{TABLES[-1]}], e.g. bearing.clearance; frb sweep takes any key."
-    return Fault(option, key, None, problem, remedy)

@@ -190,7 +190,7 @@ def command(
 ) -> None:
     """Find numbers of CASE with which its run-up agrees with a measured one: synchronous amplitudes, frequency and
     amplitude of the whirl, its onset."""
-    from frbcli.case.reading.shipped import values as listed
+    from frbcli.case.reading.listing import values as listed
     from frbcli.results.write import NEW
     from frbcli.studies.fit import fit
     from frbcli.units import display as with_unit
@@ -237,7 +237,7 @@ def _show(terminal: Terminal, fitted: Fit) -> None:
 
 def _bounds(case: Case, given: tuple[KeyRange, ...]) -> dict[str, tuple[float, float]]:
     """Bounds by keys, in SI: each is read as a value of the case."""
-    from frbcli.case.reading.shipped import values
+    from frbcli.case.reading.listing import values
 
     bounds_of = {}
     for span in given:

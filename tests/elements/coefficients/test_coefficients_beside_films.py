@@ -11,8 +11,8 @@ import pytest
 from given_rotors import JEFFCOTT, TURN, bearing, growing_seal, matrix, rigid, speed
 
 import frbcli
+from frbcli.case.reading.listing import machine_fault
 from frbcli.case.reading.load import case_from_dict, load_case_text
-from frbcli.case.reading.shipped import machine_fault
 from frbcli.equilibrium.linearised import coefficients_of
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import InputError

@@ -15,8 +15,8 @@ import pytest
 from paths import DOCS
 
 import frbcli
+from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case
-from frbcli.case.reading.shipped import values
 from frbcli.errors import InputError
 from frbcli.film.cavitation import table
 from frbcli.film.cavitation.compiled import compiled_cells

@@ -84,7 +84,7 @@ def test_what_is_given_comes_in_and_leaves(supply: str, law: str) -> None:
         assert solution.filling < ALL
         assert feed_at(film, solution.filling).share < 1.0
     if law == "elrod":  # no oil comes in at the ends: all that leaves there was given
-        assert outflow(film, MOTION.d, film.pressure(solution.state)) == pytest.approx(share * whole, rel=1e-10)
+        assert outflow(film, MOTION, film.pressure(solution.state)) == pytest.approx(share * whole, rel=1e-10)
 
 
 def test_a_film_without_a_solution_at_empty_openings_is_found_between() -> None:
