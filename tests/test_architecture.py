@@ -217,3 +217,20 @@ def test_public_methods_say_what_they_do() -> None:
         if not any(says(own, method.name) for ancestor in line(name) for own in ancestor.body)
     ]
     assert silent == []
+
+
+MODULE = re.compile(r"(?<![\w./{}])(?:\w+/)*\w+\.py\b")
+
+
+def test_modules_that_are_named_are_there() -> None:
+    """In comments, docstrings and pages: a module that has moved is looked for in vain."""
+    folders = ("frbcli", "tests", "docs", ".ci")
+    there = [file.relative_to(PROJECT).as_posix() for folder in folders for file in (PROJECT / folder).rglob("*.py")]
+    texts = (*PACKAGE.rglob("*.py"), *(PROJECT / "docs").rglob("*.md"))
+    missing = [
+        (str(file.relative_to(PROJECT)), name)
+        for file in texts
+        for name in MODULE.findall(file.read_text(encoding="utf-8"))
+        if not any(f"/{place}".endswith(f"/{name}") for place in there)
+    ]
+    assert missing == []

@@ -2,7 +2,7 @@
 
 A frequency that changes within a window lowers and widens its line. By default the length of the windows follows from
 the ramp of the rotor speed, with enough resolution to separate the lines of interest; the remaining loss of the
-synchronous line is computed (smear.py) and stated. Amplitudes of order_tracking.py do not depend on the ramp.
+synchronous line is computed and stated. Amplitudes of order_tracking.py do not depend on the ramp.
 
 Peaks of a curve, how far each stands out of it, intervals in which it is high, and where between two samples it
 crosses a level.

@@ -38,7 +38,7 @@ from frbcli.film.cells.film import (
 from frbcli.film.cells.gas.balance import Carried, KeptGas
 from frbcli.film.cells.loads import FilmLoads, estimate, loads
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.tilted.steady_force import land_paths, lands, summed
+from frbcli.film.cells.tilted_film import land_paths, lands, summed
 from frbcli.scene.films import slope_of, tilt_of
 from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, law_at

@@ -21,7 +21,7 @@ from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution, fitted_gr
 from frbcli.film.cells.linearised import settled_force
 from frbcli.film.cells.loads import CavitationFactor, FilmLoads, estimate, loads
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.tilted.steady_force import Land, lands, summed
+from frbcli.film.cells.tilted_film import Land, lands, summed
 from frbcli.film.gap import Section
 from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.film import FilmForce, direct_force, evaluate, largest_pressure, make_film

@@ -187,7 +187,7 @@ def compilation_shown(
     shown: Display, case: Case, also: Iterable[Case] = (), kernels: Kernels = "loop"
 ) -> Iterator[None]:
     """Within it, a display shows the progress of the compilation; case, also, kernels: see `computing`."""
-    from frbcli.compiled import counted  # heavy: only where kernels are used
+    from frbcli.compiled import counted
     from frbcli.scene.cost import compile_s
 
     shown_s, about = 0.0, ""

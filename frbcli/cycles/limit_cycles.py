@@ -3,7 +3,7 @@ static equilibria, Hopf points, and the branches of cycles from them; which case
 by one of its numbers.
 
 Over another number the last unknown of branches is that number over its largest value. A machine is made for each
-value, see method/courses.py.
+value, see method/equilibria.py.
 
 What limit cycles say of other results: what causes the onset and the end of a whirl in a run, and whether the whirl
 at a threshold begins softly or hard, and from which speed on a disturbance is enough for it.

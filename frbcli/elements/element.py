@@ -49,7 +49,7 @@ class MachineElement(ABC):
 
     key: str
 
-    symbol: ClassVar[str] = ""  # how a sketch draws it at its bearing, a row of report/svg.py
+    symbol: ClassVar[str] = ""  # how a sketch draws it at its bearing, a row of report/sketch.py
     arrow: ClassVar[tuple[str, str] | None] = None  # letter and words of its arrow in a sketch
     besides_bearings: ClassVar[bool] = False  # whether it moves shells of bearings, or pulls at the shaft
 

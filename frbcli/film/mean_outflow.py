@@ -11,11 +11,11 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
+from frbcli.film.cells.balance.grid_motion import level
 from frbcli.film.cells.balance.side_flow import opens_far, side_flow
 from frbcli.film.cells.balance.states import PRESSURE, STATES
 from frbcli.film.cells.data import Records, VolumeFilms
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.tilted.motion import level
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.mean_fields import MeanFilm, fields_at
 from frbcli.film.parabola import hermite

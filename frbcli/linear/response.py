@@ -63,7 +63,7 @@ TURN = 2.0 * math.pi
 # Larger semi-axis over the gap that is left at rest, above which linear coefficients are doubtful. Against the
 # nonlinear synchronous response (cycles/unbalance) of jeffcott and rigid with short films and unbalances of 10 to 200 g
 # mm, the amplitudes of journals have errors of at most 4 % up to a tenth of that gap, 15 % up to this share, 26 % up to
-# half of it, and a factor of 2 beyond, where the response jumps. tests/linear/test_response.py holds it.
+# half of it, and a factor of 2 beyond, where the response jumps. tests/linear/rotors/test_response.py holds it.
 DOUBTFUL = 0.3
 ORBIT_PLACES = 360  # at which the eccentricity along an orbit is evaluated
 SOUND, DOUBTFUL_MOTION, BEYOND_GAP = "linear", "doubtful", "beyond-gap"

@@ -28,7 +28,7 @@ from frbcli.plot.style import (
     styled,
 )
 from frbcli.plot.waterfall import draw_levels, level_label, run_spectra
-from frbcli.results.records import touching_name
+from frbcli.results.columns import touching_name
 from frbcli.results.store import Run
 from frbcli.studies.against import AgainstMeasured
 from frbcli.studies.compare import Comparison, Variant

@@ -52,8 +52,9 @@ from frbcli.plot.style import (
     styled,
     with_subscripts,
 )
+from frbcli.results.columns import event_name
 from frbcli.results.container import refuse
-from frbcli.results.records import SPEED, TIME, event_name
+from frbcli.results.records import SPEED, TIME
 from frbcli.results.store import Run
 from frbcli.scene.machine.rotor import harmonics_of
 from frbcli.units import SpeedUnit

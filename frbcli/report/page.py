@@ -45,7 +45,8 @@ from frbcli.plot.waterfall import (
     ticks,
 )
 from frbcli.report.sketch import curve, drawing, element, film_sketches, line, rotor_sketch, text
-from frbcli.results.records import SPEED, amplitude_text, event_name, frequency_text
+from frbcli.results.columns import amplitude_text, event_name, frequency_text
+from frbcli.results.records import SPEED
 from frbcli.results.store import Run
 from frbcli.results.write import MARK, PAGE, require_places, write
 from frbcli.runs.header import FILM_SIGNALS, POWER

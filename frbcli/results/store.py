@@ -22,9 +22,9 @@ from frbcli.arrays import Array
 from frbcli.columns import html_table, table_of
 from frbcli.errors import did_you_mean
 from frbcli.results import parts
+from frbcli.results.columns import EVENTS
 from frbcli.results.container import USER_BLOCK, check_output, open_whole, refuse, replaced
 from frbcli.results.records import (
-    EVENTS,
     LARGEST,
     MOST_EVENTS,
     MOST_SAMPLES,

@@ -10,7 +10,7 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.elements.collar import Collar, axial_motion, collar_of, rests_over_speed
-from frbcli.results.records import AXIAL_SIGNALS
+from frbcli.results.columns import AXIAL_SIGNALS
 from frbcli.rotor.loads import SpeedProfile
 from frbcli.scene.machine.rotor import collar_tilt
 from frbcli.scene.machine.turbocharger import shaft_of

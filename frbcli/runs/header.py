@@ -17,7 +17,7 @@ from frbcli.case.bearing import SIDES
 from frbcli.case.schema import Case
 from frbcli.elements.pin import pin_torque
 from frbcli.elements.spring import law_record
-from frbcli.results.records import AXIAL_SIGNALS
+from frbcli.results.columns import AXIAL_SIGNALS
 from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, LOSS, Header
 from frbcli.rotor.assembly import PLANE
 from frbcli.rotor.loads import Harmonic, Tabulated

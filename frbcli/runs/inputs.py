@@ -20,7 +20,7 @@ from frbcli.case.reading.time_tables import inputs_of
 from frbcli.case.run import GOVERNED
 from frbcli.case.schema import Case
 from frbcli.film.cells.balance.boundaries import opening_pressures
-from frbcli.results.records import DRIVE_SIGNALS, FRICTION_SIGNAL
+from frbcli.results.columns import DRIVE_SIGNALS, FRICTION_SIGNAL
 from frbcli.rotor.loads import LinearPart, SpeedProfile
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.heat import heat_of

@@ -31,7 +31,7 @@ from frbcli.equilibrium.static_films import share_of_cells
 from frbcli.errors import FrbError, NotConverged
 from frbcli.film.cells.balance.newton_step import film_newton
 from frbcli.film.kept import kept_beside
-from frbcli.results.records import event_name
+from frbcli.results.columns import event_name
 from frbcli.results.store import Run
 from frbcli.runs.error_budget import FewerCells
 from frbcli.runs.march import March, Progress

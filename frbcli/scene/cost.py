@@ -146,7 +146,7 @@ SMALL_ROTOR, INVERSE_ns, PRODUCTS_ns, JOURNALS_ns = 30, 3.6, 3.0, 0.4
 class ExpectedCost:
     """steps, film_solves: of the whole run; cpu_s: of its time loop; before_s: of tables, reduction of the shaft and
     the first state; after_s: of the stated error; memory_B: bytes of the process; second_s: of a second run that is
-    made unasked or asked for, see planning/error_runs.py. CPU times are for the reference machine."""
+    made unasked or asked for, see planning/plan.py. CPU times are for the reference machine."""
 
     steps: int
     film_solves: int

@@ -1,7 +1,7 @@
 """The time loop: rotor and films advanced together by an implicit Runge-Kutta method with error control. Compiled.
 
 A step is a few stages (stage/) and what all loops do around them (step.py). All that it is given and carries along is
-in state.py, the methods in tableau.py.
+in state.py, as the methods are.
 
 The time loop step by step, for runs that record more than the motion of the rotor. Compiled.
 
@@ -19,9 +19,9 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.compiled import by_types, compiled, folder_of
 from frbcli.film.cells.balance.balances import FILLING
+from frbcli.film.cells.balance.grid_motion import level
 from frbcli.film.cells.balance.side_flow import side_flow
 from frbcli.film.cells.data import PASSED
-from frbcli.film.cells.tilted.motion import level
 from frbcli.solve.drive import end_of_turning, overshoots, stage_rotation, turn_on, turns_freely
 from frbcli.solve.films.forces import drag_integral, left_over, solved
 from frbcli.solve.films.steps import (

@@ -20,7 +20,7 @@ from frbcli.case.schema import Case
 from frbcli.columns import ZERO_CELSIUS, Column, Shown, Table, Tabular, table_of, uncertain_speed
 from frbcli.errors import Fault, InputError, NotConverged, did_you_mean, input_error
 from frbcli.film.cavitation.table import law_named, laws, names
-from frbcli.results.records import uncertain_pair
+from frbcli.results.columns import uncertain_pair
 from frbcli.results.store import Run, check_output
 from frbcli.runs.header import POWER
 from frbcli.runs.march import Progress

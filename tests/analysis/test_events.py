@@ -22,7 +22,7 @@ from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.linear import critical_speeds
 from frbcli.linear.critical_speeds import linear_critical_speeds
 from frbcli.plot.run.summary import _words
-from frbcli.results.records import event_name
+from frbcli.results.columns import event_name
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
 from frbcli.scene.cost import CRITICAL_s, before_s

@@ -19,7 +19,8 @@ from frbcli.case.schema import Case
 from frbcli.cycles.columns import CycleBranch, CyclePoint
 from frbcli.cycles.shooting.diagram import _locking, whirls_of_branch
 from frbcli.cycles.shooting.period_map import SAMPLES, Passage, PeriodMap, Wet, period_map, wet_at
-from frbcli.cycles.shooting.shots import Shooting, Shot, largest, settled
+from frbcli.cycles.shooting.rest import settled
+from frbcli.cycles.shooting.shots import Shooting, Shot, largest
 
 OMEGA = 2.0 * math.pi * 120.0
 TURNS = 60

@@ -14,7 +14,8 @@ import frbcli
 from frbcli.cycles.columns import CyclePoint, LimitCycles
 from frbcli.cycles.limit_cycles import check
 from frbcli.cycles.shooting.period_map import PeriodMap, period_map, wet_at
-from frbcli.cycles.shooting.shots import Shooting, largest, settled
+from frbcli.cycles.shooting.rest import settled
+from frbcli.cycles.shooting.shots import Shooting, largest
 from frbcli.equilibrium.resting import resting_position
 from frbcli.linear.stability_point import critical_eigenvalue, eigenvalues
 from frbcli.scene.gate.rule import SPEED_CYCLES

@@ -15,7 +15,8 @@ from frbcli.cli.main import run
 from frbcli.cycles.columns import LimitCycles
 from frbcli.cycles.shooting.fixed_point import Conditions, SlowSpace, fixed_point, ritz, slow_space
 from frbcli.cycles.shooting.period_map import SAMPLES, PeriodMap, Wet, period_map, turned_back, wet_at
-from frbcli.cycles.shooting.shots import Shooting, largest, settled
+from frbcli.cycles.shooting.rest import settled
+from frbcli.cycles.shooting.shots import Shooting, largest
 from frbcli.equilibrium.resting import resting_position
 from frbcli.film.cells.film import Motion
 from frbcli.film.cells.linearised import steady_solution

@@ -15,15 +15,8 @@ from rigid_cycles import CLEARANCE, GRAVITY, MASS, UNIT_Hz, diagram, rigid
 from frbcli.cycles.method.machine import smooth_films
 from frbcli.cycles.shooting.branch import OtherCells, follow_shots, shot_errors
 from frbcli.cycles.shooting.fixed_point import SlowSpace
-from frbcli.cycles.shooting.shots import (
-    AT_REST_DIFFERENCE,
-    RestThreshold,
-    Shooting,
-    Shot,
-    located,
-    multipliers_of,
-    thresholds,
-)
+from frbcli.cycles.shooting.rest import RestThreshold, located, thresholds
+from frbcli.cycles.shooting.shots import AT_REST_DIFFERENCE, Shooting, Shot, multipliers_of
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan

@@ -13,7 +13,8 @@ from marches import march, rigid_shaft, seen_between, start
 import frbcli
 from frbcli.case.schema import Case
 from frbcli.cycles.shooting.period_map import period_map
-from frbcli.cycles.shooting.shots import Shooting, settled
+from frbcli.cycles.shooting.rest import settled
+from frbcli.cycles.shooting.shots import Shooting
 from frbcli.equilibrium import dynamic_films, static_films
 from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator
 from frbcli.equilibrium.resting import resting_position

@@ -18,7 +18,7 @@ from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.static_films import static_films as films_of
 from frbcli.errors import InputError
 from frbcli.film.cells.loads import loads
-from frbcli.film.cells.tilted.steady_force import land_solution, tilted_force
+from frbcli.film.cells.tilted_film import land_solution, tilted_force
 from frbcli.linear.columns import FILM, film_columns, point_columns
 from frbcli.linear.sheets.film_state import FilmState
 from frbcli.linear.stability import stability_points

@@ -52,7 +52,7 @@ from frbcli.linear.columns import (
 )
 from frbcli.linear.critical_map import CRITICAL_SPEEDS
 from frbcli.linear.damped_modes import API_POINTS, ISO_POINTS, MARGINS
-from frbcli.results.records import EVENTS, MACHINE_SIGNALS, PART_SIGNALS
+from frbcli.results.columns import EVENTS, MACHINE_SIGNALS, PART_SIGNALS
 from frbcli.scene.machine.findings import FILM_LOADS, FILM_OPERATION, FILM_TILTS
 from frbcli.studies.against import DEVIATIONS, RIDGES
 from frbcli.studies.compare import HEAT, VARIANT

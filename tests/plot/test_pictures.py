@@ -27,7 +27,7 @@ from frbcli.plot.style import (
     styled,
     with_subscripts,
 )
-from frbcli.results.records import EVENTS
+from frbcli.results.columns import EVENTS
 
 
 def overlapping(texts: list[Text], figure: Figure) -> list[tuple[str, str]]:

@@ -12,14 +12,15 @@ from marches import DIAMETRAL, LENGTH, POLAR, RHO, D, flat_films, march, rigid_s
 import frbcli
 from frbcli.case.schema import Case
 from frbcli.cycles.shooting.period_map import period_map
-from frbcli.cycles.shooting.shots import Shooting, settled
+from frbcli.cycles.shooting.rest import settled
+from frbcli.cycles.shooting.shots import Shooting
 from frbcli.equilibrium.linearised import first_order, linearised
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.ring_speed import ring_torques
 from frbcli.equilibrium.static_films import static_films
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import InputError
-from frbcli.film.cells.tilted.steady_force import tilted_force
+from frbcli.film.cells.tilted_film import tilted_force
 from frbcli.film.kinds.tilted import TiltedFilms
 from frbcli.linear.stability import stability_points
 from frbcli.rotor.assembly import COORDINATES, PLANE, without_spins

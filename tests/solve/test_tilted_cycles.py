@@ -14,7 +14,8 @@ import frbcli
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cycles.shooting.period_map import PeriodMap, period_map, wet_at
-from frbcli.cycles.shooting.shots import Rest, Shooting, settled
+from frbcli.cycles.shooting.rest import settled
+from frbcli.cycles.shooting.shots import Rest, Shooting
 from frbcli.linear.stability import stability_points
 from frbcli.rotor.assembly import PLANE
 from frbcli.scene.forms.tilted import TiltedForm

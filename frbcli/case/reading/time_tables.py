@@ -22,7 +22,7 @@ from frbcli.errors import InputError
 from frbcli.units import SPEED, ValueFault, quantity
 
 if TYPE_CHECKING:
-    from frbcli.results.measured.delimited import Columns
+    from frbcli.results.measured.columns import Columns
 
 
 MOST_NUMBERS = 60_000  # of all tables of a case, whose text a run file holds

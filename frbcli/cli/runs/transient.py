@@ -241,7 +241,7 @@ def _report(case: Case, run: Run, terminal: Terminal) -> None:
     """Status with its cause and remedy, events, cost and error, as text."""
     from frbcli.analysis.events import about_critical_speeds
     from frbcli.analysis.subsynchronous import with_whirl_names
-    from frbcli.results.records import EVENTS
+    from frbcli.results.columns import EVENTS
     from frbcli.runs.advice import accuracy_advice, forced_advice, run_advice, run_end
     from frbcli.runs.second_run import about_certainty, account
 

@@ -85,7 +85,7 @@ def command(
     from frbcli.analysis.events import about_critical_speeds
     from frbcli.analysis.subsynchronous import with_whirl_names
     from frbcli.case.run import speed_unit_of
-    from frbcli.results.records import EVENTS
+    from frbcli.results.columns import EVENTS
 
     if listed:
         show_columns(run_file, terminal)

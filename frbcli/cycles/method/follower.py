@@ -156,7 +156,7 @@ class Follower:
         return Cycle(place, machine, y, eccentricities(machine, y), spectrum, kind)
 
     def multipliers(self, place: Place, near: Multipliers | None = None, enough: float = TRIVIAL) -> Multipliers:
-        """Multipliers of the cycle at a place. near, enough: see floquet.py."""
+        """Multipliers of the cycle at a place. near, enough: see balance.py."""
         machine, y = self.course.machine(place.y), self.course.with_speed(place.y)
         fast = self.fast_multipliers(machine, y, near, max(TRIVIAL, enough))
         if not self.moves(y):
@@ -166,7 +166,7 @@ class Follower:
         return self.course.multipliers(fast, y, lambda machine: motion(machine)(y)[1][:size, :size])
 
     def fast_multipliers(self, machine: Machine, y: Array, near: Multipliers | None, enough: float) -> Multipliers:
-        """Multipliers of a cycle y while its machine stays. near, enough: see floquet.py."""
+        """Multipliers of a cycle y while its machine stays. near, enough: see balance.py."""
         return multipliers(machine, self.course.states(machine), y, near, enough)
 
     def motion(self, place: Place) -> EquationsOf:

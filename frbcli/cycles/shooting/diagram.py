@@ -40,7 +40,8 @@ from frbcli.cycles.shooting.branch import (
     threshold_errors,
 )
 from frbcli.cycles.shooting.period_map import SAMPLES, STEPS_PER_REVOLUTION, PeriodMap, Wet, period_map
-from frbcli.cycles.shooting.shots import Rest, RestThreshold, Shooting, Shot, largest, resting, thresholds
+from frbcli.cycles.shooting.rest import RestThreshold, resting, thresholds
+from frbcli.cycles.shooting.shots import Rest, Shooting, Shot, largest
 from frbcli.cycles.unbalance import FREE, WHIRLS, locked_lines, nearly_half, spaced
 from frbcli.errors import NotConverged
 

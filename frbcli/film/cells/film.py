@@ -149,7 +149,7 @@ class Flows:
 @dataclass(frozen=True)
 class VolumeSolution:
     """w: (m, k) unknown; state: of the cells, arrays (m, k), given values in grooves and holes; Newton iterations;
-    before: (m, k) oil fractions before the upstream cells that it was solved with, see carried.py; gas: of a law whose
+    before: (m, k) oil fractions before the upstream cells that it was solved with, see states.py; gas: of a law whose
     oil carries any; filling: of openings with limited flow, see boundaries.py; stages: (n, 3, m, k) w, c_in and r of
     a steady film with gas, first solved upwind, then each time with second order."""
 

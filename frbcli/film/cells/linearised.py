@@ -5,10 +5,10 @@ With the changes w of the cells' unknowns, d of the journal's place and d' of it
     storage w' + flow w + by_place d + by_rate d' = 0,        F = push w,
 
 in the frame at rest, where the settled film does not change. Of a journal that tilts, d holds its tilts, too
-(tilted/steady_force.py). Journal and shell may also turn faster: the angle by which they turn together is then the last
+(tilted_film.py). Journal and shell may also turn faster: the angle by which they turn together is then the last
 one of d, of whose rate alone the film knows. Oil is carried upwind, whose derivatives are exact on neighbouring cells,
 and laws with kinks count with the derivative on the side on which each cell is. Free gas that the oil carries is one
-more state per cell, see gas/linear.py. Openings that take all that their supply gives are one more state of the film:
+more state per cell, see gas/balance.py. Openings that take all that their supply gives are one more state of the film:
 the filling of their line, see boundaries.py.
 
 The dynamic stiffness Z(s) of mass-conserving films: -F = Z(s) d for a motion d exp(s t) of the journal.
@@ -39,6 +39,8 @@ from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cells.balance.balances import FLOWS, SUPPLY_NET, balances, without_ends
 from frbcli.film.cells.balance.boundaries import ALL
+from frbcli.film.cells.balance.faces import press_cells
+from frbcli.film.cells.balance.grid_motion import seen_by_grid
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     CARRIED_GAS,
@@ -55,8 +57,6 @@ from frbcli.film.cells.gas.balance import linear_states
 from frbcli.film.cells.loads import CavitationFactor, force, pushed, pushing, shear_weights
 from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.tilted.faces import press_cells
-from frbcli.film.cells.tilted.motion import seen_by_grid
 from frbcli.film.rectangles.film import FieldSlopes, FilmForce
 
 if TYPE_CHECKING:

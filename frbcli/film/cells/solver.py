@@ -28,6 +28,7 @@ from frbcli.film.cells.balance.balances import (
     balances,
 )
 from frbcli.film.cells.balance.boundaries import feed_at, is_limited, limited
+from frbcli.film.cells.balance.grid_motion import seen_by_grid
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     CARRIED_GAS,
@@ -48,7 +49,6 @@ from frbcli.film.cells.data import SIDES, VolumeFilms, volume_films
 from frbcli.film.cells.film import Flows, Motion, Storage, VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.balance import FreeGas, GasMixing, KeptGas, free_gas
 from frbcli.film.cells.gas.carry import FACTOR, GAS_PAST, HEIGHT, PATHS, carry_gas, follow_oil, replace_oil
-from frbcli.film.cells.tilted.motion import seen_by_grid
 from frbcli.film.gap import gap_rate
 
 ROUND_OFF = 1e-15  # residual of a cell over the terms that it is the sum of

@@ -22,15 +22,16 @@ from frbcli.film.cells.data import SHEARED
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.linearised import film_at
 from frbcli.film.cells.loads import loads
-from frbcli.film.cells.tilted.kernel import TiltedVolumes, tilted_volumes
-from frbcli.film.cells.tilted.steady_force import (
+from frbcli.film.cells.tilted_film import (
     COORDINATES,
     TiltedFilm,
     TiltedLand,
+    TiltedVolumes,
     land_solution,
     linear_tilted,
     settled_force,
     tilted_force,
+    tilted_volumes,
     unit_loads,
 )
 from frbcli.film.gap import Section

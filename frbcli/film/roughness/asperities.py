@@ -14,7 +14,7 @@ The mean planes of the surfaces have the distance of the smooth gap, h = c - e c
 centres: it is the same along the axis, so that the integrals over the bearing depend on the eccentricity alone. The
 trapezoidal rule over the arc where summits meet converges exponentially, as the pressure fades out at its ends.
 
-Source of pressure and area: Greenwood, Tripp 1970, see summits.py. Boundary friction is Coulomb's.
+Source of pressure and area: Greenwood, Tripp 1970. Boundary friction is Coulomb's.
 """
 
 from __future__ import annotations

@@ -16,8 +16,8 @@ from frbcli.columns import ZERO_CELSIUS
 from frbcli.film.cavitation.table import laws, names
 from frbcli.plot.curves import HEIGHT, Over, ScaledSignal, Span, curves_figure, draw_curves
 from frbcli.plot.style import draw_bands
+from frbcli.results.columns import AXIAL_SIGNALS
 from frbcli.results.container import refuse
-from frbcli.results.records import AXIAL_SIGNALS
 from frbcli.results.store import Run
 from frbcli.runs.header import FILM_SIGNALS
 

@@ -62,8 +62,9 @@ from frbcli.plot.style import (
     styled,
 )
 from frbcli.plot.waterfall import draw_levels, level_label, orders, reading, run_spectra
+from frbcli.results.columns import touching_name
 from frbcli.results.container import refuse
-from frbcli.results.records import SPEED, Signal, pieces, touching_name
+from frbcli.results.records import SPEED, Signal, pieces
 from frbcli.results.store import Run
 from frbcli.units import SpeedUnit
 

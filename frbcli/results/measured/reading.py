@@ -19,17 +19,8 @@ from numpy.typing import NDArray
 
 from frbcli.arrays import Array
 from frbcli.errors import InputError, printable
-from frbcli.results.measured.delimited import (
-    LARGEST_FILE,
-    MOST_COLUMNS,
-    Columns,
-    DelimitedTable,
-    NoTable,
-    is_interval,
-    read_table,
-    seconds,
-    wrong_file,
-)
+from frbcli.results.measured.columns import LARGEST_FILE, Columns, is_interval, wrong_file
+from frbcli.results.measured.delimited import MOST_COLUMNS, DelimitedTable, NoTable, read_table, seconds
 from frbcli.results.records import MOST_SAMPLES
 from frbcli.results.write import Unreadable, require_file
 
@@ -213,7 +204,7 @@ def read_columns(path: Path) -> Columns:
     Text: names, perhaps units, then numbers or time stamps, separated by comma, semicolon, tab or blanks; lines above
     the names, and those that begin with #, are left out; with a semicolon, tab or blanks, numbers may have a decimal
     comma; without names the columns are called 1, 2 and so on. WAV: the channels, named 1, 2 and so on, from -1 to 1
-    where they are whole numbers. MAT: `read_mat` of mat.py. UFF (or unv): see `read_uff`. Raises InputError for what is
+    where they are whole numbers. MAT: see `read_mat`. UFF (or unv): see `read_uff`. Raises InputError for what is
     none of these.
     """
     try:

@@ -21,7 +21,7 @@ from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cells.channels.data import with_channels
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.tilted.steady_force import tilted_film
+from frbcli.film.cells.tilted_film import tilted_film
 from frbcli.film.gap import Section, whole_width
 from frbcli.film.grid import Mesh
 from frbcli.film.kinds.cells import CellFilms

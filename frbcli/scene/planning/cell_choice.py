@@ -10,7 +10,7 @@ falls, and where it rests.
 
 The largest eccentricity that a run-up is expected to reach before a whirl, from static load and unbalance.
 
-A journal without mass in a short film (short_bearing.py) falls from where it starts, in the first revolutions, while
+A journal without mass in a short film falls from where it starts, in the first revolutions, while
 the oil turns it; later it rests under its weight and unbalance. Openings, supply pressure and mass are left out.
 scipy is not asked for the two numbers, since its import takes longer than a whole plan.
 

@@ -1,6 +1,6 @@
 """The films at both ends of a stage and of a step of the time loop, compiled.
 
-Each kind of films has its own answers (kinds.py). What the films do in between is in forces.py.
+Each kind of films has its own answers. What the films do in between is in forces.py.
 
 Which kind of films the time loop has: asked here alone, by the types of the films, when the loop is compiled.
 
@@ -38,8 +38,8 @@ from frbcli.film.cells.channels.flow import (
     push_of_channel,
 )
 from frbcli.film.cells.data import BY_ITSELF, SIDES, Records, VolumeFilms
-from frbcli.film.cells.tilted.kernel import TiltedVolumes
-from frbcli.solve.films.cells import Work, accept_cells, begin_cells, make_cell_work, write_cell_oil
+from frbcli.film.cells.tilted_film import TiltedVolumes
+from frbcli.solve.films.cell_steps import Work, accept_cells, begin_cells, make_cell_work, write_cell_oil
 from frbcli.solve.films.fillings import GRID, filling_error
 from frbcli.solve.films.tilted import TiltedWork, make_tilted_work, write_land_oil
 

@@ -13,21 +13,12 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
+from frbcli.film.cells.balance.grid_motion import GridMotion
 from frbcli.film.cells.balance.states import follow_law
 from frbcli.film.cells.data import ALL_SIDES, Records
-from frbcli.film.cells.tilted.kernel import TiltedVolumes
-from frbcli.film.cells.tilted.motion import GridMotion
-from frbcli.solve.films.cells import (
-    LOCAL_FACTOR,
-    NO_FACTOR,
-    SLOWEST,
-    SOLVED,
-    cell_arrays,
-    move_cells,
-    oil_fraction,
-    sheared,
-    solve_cells,
-)
+from frbcli.film.cells.tilted_film import TiltedVolumes
+from frbcli.solve.films.cell_steps import cell_arrays, oil_fraction
+from frbcli.solve.films.cells import LOCAL_FACTOR, NO_FACTOR, SLOWEST, SOLVED, move_cells, sheared, solve_cells
 from frbcli.solve.films.fillings import GRID
 
 ENDS = 2  # of a bearing, each of which the loop takes for a journal
@@ -36,7 +27,7 @@ ENDS = 2  # of a bearing, each of which the loop takes for a journal
 class TiltedWork(NamedTuple):
     """Scratch of the time loop for F films of L lands: as Work in cell_steps.py, but of lands; grids (2 F,), of a film
     one after the other. places, rates, moves: (F, 4) coordinates of the journals in the directions of the grids, see
-    tilted/data.py, their rates, and their last corrections; omega (F,); push (4, m, k), loads (L, 4), slopes (L, 4, 4),
+    tilted_film.py, their rates, and their last corrections; omega (F,); push (4, m, k), loads (L, 4), slopes (L, 4, 4),
     unused (4, 4), see film_loads; force (F, 4), by_rate (F, 4, 4) of films; cross (4 F, 4 F); channel and changes of no
     channels."""
 
@@ -110,7 +101,7 @@ def meet_ends(work: Any, x_0: Array, u: Array, omega: Array, clearances: Array, 
 
 @compiled(inline=True)
 def _between(d: Array, v: Array, omega: float, g: float, rate: float) -> GridMotion:
-    """The motion of a journal that tilts, from its coordinates (4,), see tilted/data.py, and their rates."""
+    """The motion of a journal that tilts, from its coordinates (4,), see tilted_film.py, and their rates."""
     more_x, more_y, more_v_x, more_v_y = d[2] - d[0], d[3] - d[1], v[2] - v[0], v[3] - v[1]
     return GridMotion(d[0], d[1], omega, v[0], v[1], 0.0, g, rate, more_x, more_y, more_v_x, more_v_y, True)
 

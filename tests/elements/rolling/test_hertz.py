@@ -5,7 +5,7 @@ from math import pi, sqrt
 import pytest
 from ball_bearings import STEEL, A, B
 
-from frbcli.elements.ball import contact
+from frbcli.elements.ball_force import contact
 from frbcli.materials import Elastic
 
 RADIUS = 5e-3

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from frbcli.film.cavitation.conditions import HalfSommerfeld
+from frbcli.film.cells.balance.faces import film_loads
 from frbcli.film.cells.balance.plain_clipped import clipped_means
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, STATES
 from frbcli.film.cells.data import SIDES, volume_films
@@ -15,7 +16,6 @@ from frbcli.film.cells.film import Motion, VolumeFilm
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.tilted.faces import film_loads
 from frbcli.film.gap import Section
 
 TURN = 2.0 * math.pi

@@ -13,7 +13,7 @@ from frbcli.film.cells.film import Motion, Storage, VolumeFilm
 from frbcli.film.cells.linearised import dynamic_stiffness, linear_film, steady_force, stiffness_at
 from frbcli.film.cells.loads import force, shear_weights
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.tilted.steady_force import TiltedFilm, linear_tilted, tilted_film, unit_loads
+from frbcli.film.cells.tilted_film import TiltedFilm, linear_tilted, tilted_film, unit_loads
 from frbcli.film.gap import whole_width
 from frbcli.scene.films import film_places, volume_film
 

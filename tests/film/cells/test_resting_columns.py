@@ -16,7 +16,8 @@ from frbcli.film.cells.film import Motion, Storage
 from frbcli.film.gap import gap_height
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
-from frbcli.solve.films.cells import HELD, Work, cell_response, move_even
+from frbcli.solve.films.cell_steps import Work
+from frbcli.solve.films.cells import HELD, cell_response, move_even
 from frbcli.solve.films.steps import make_work
 from frbcli.solve.stage.equations import FilmMotion
 

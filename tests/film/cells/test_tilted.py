@@ -13,6 +13,7 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balance.balances import FLOWS, GridMotion, balances
+from frbcli.film.cells.balance.grid_motion import seen_by_grid
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, STATES, cell_states, follow_law
 from frbcli.film.cells.block_cyclic import ENTRIES
 from frbcli.film.cells.data import ALL_SIDES, SIDES, volume_films
@@ -20,8 +21,7 @@ from frbcli.film.cells.film import Motion, VolumeFilm, fitted_grid, reference_pr
 from frbcli.film.cells.loads import FilmLoads, loads
 from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.tilted.motion import seen_by_grid
-from frbcli.film.cells.tilted.steady_force import lands, summed
+from frbcli.film.cells.tilted_film import lands, summed
 from frbcli.film.gap import Hole, Section
 
 LAWS: dict[str, Law] = {

@@ -13,7 +13,7 @@ from frbcli.film.cavitation.conditions import HalfSommerfeld, Reynolds, Sommerfe
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.linearised import steady_force
-from frbcli.film.cells.tilted.steady_force import TiltedFilm, tilted_film, tilted_force
+from frbcli.film.cells.tilted_film import TiltedFilm, tilted_film, tilted_force
 from frbcli.film.gap import Section
 
 R, B, C, ETA, TOTAL = 0.01, 0.012, 40e-6, 0.01, 900.0

@@ -144,7 +144,7 @@ def test_order_in_time_of_the_oil_that_a_film_keeps() -> None:
 
 
 def test_rotating_film_settles_to_its_steady_state() -> None:
-    """In pressure. In the cavity the steady film holds the oil of the cell upstream at its faces, see carried.py."""
+    """In pressure. In the cavity the steady film holds the oil of the cell upstream at its faces, see states.py."""
     section = section_of("axial-groove", 2e5)
     motion = Motion((0.3, -0.4), (0.0, 0.0), 300.0)
     phi = math.radians(7.5) + np.linspace(0.0, 2.0 * math.pi, 49)

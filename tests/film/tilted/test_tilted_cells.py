@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from frbcli.film.cavitation.conditions import HalfSommerfeld, Sommerfeld
-from frbcli.film.cells.tilted.steady_force import settled_force, tilted_film, tilted_force
+from frbcli.film.cells.tilted_film import settled_force, tilted_film, tilted_force
 from frbcli.film.gap import Section
 
 R, C, ETA, TOTAL = 0.01, 40e-6, 0.01, 900.0

@@ -12,15 +12,14 @@ from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds, S
 from frbcli.film.cavitation.law import CellState, Law
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balance.balances import COLUMNS, ENDS_NET, FLOWS, SUPPLY_NET, GridMotion, balances
+from frbcli.film.cells.balance.faces import film_loads
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, STATES, before_upstream
 from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
 from frbcli.film.cells.data import ALL_SIDES, BY_ENDS
 from frbcli.film.cells.film import Motion, Storage, VolumeFilm, gap_height
 from frbcli.film.cells.gas.carry import BACKWARD, DOWNWARD, GIVEN, KEPT, ONWARD, OUT, PATHS, UPWARD, follow_oil
-from frbcli.film.cells.tilted.faces import film_loads
-from frbcli.film.cells.tilted.kernel import TiltedVolumes, tilted_volumes
-from frbcli.film.cells.tilted.steady_force import TiltedLand, _loads, tilted_film
+from frbcli.film.cells.tilted_film import TiltedLand, TiltedVolumes, _loads, tilted_film, tilted_volumes
 from frbcli.film.gap import AxialGroove, Hole, Section, gap_rate
 
 R, B, C, ETA, TOTAL = 0.01, 0.012, 40e-6, 0.01, 900.0

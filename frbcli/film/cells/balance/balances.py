@@ -18,7 +18,19 @@ from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import wright_omega
 from frbcli.film.cells.balance.boundaries import BEND, PREFACTOR, STEEPNESS
-from frbcli.film.cells.balance.clipped import spread_oil
+from frbcli.film.cells.balance.diffusion import spread_oil
+from frbcli.film.cells.balance.faces import (
+    FaceFlows,
+    OwnAndNext,
+    Sloped,
+    StencilRows,
+    balanced,
+    cubed,
+    drawn,
+    pressed,
+    stored,
+)
+from frbcli.film.cells.balance.grid_motion import GridMotion, add_by_motion, gap_along
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     FRACTION,
@@ -59,18 +71,6 @@ from frbcli.film.cells.data import (
     UNKNOWN,
     WIDTHS,
 )
-from frbcli.film.cells.tilted.faces import (
-    FaceFlows,
-    OwnAndNext,
-    Sloped,
-    StencilRows,
-    balanced,
-    cubed,
-    drawn,
-    pressed,
-    stored,
-)
-from frbcli.film.cells.tilted.motion import GridMotion, add_by_motion, gap_along
 from frbcli.film.roughness.contact import flowing_cube, rough_flow, sheared_gap
 
 # Sums over the ends and the given cells: what flows in and out there, the net outflow through the ends and the net
@@ -506,7 +506,7 @@ def _stand(
     ring: Array, cells: Array, places: Array, states: Array, motion: GridMotion, past: Array, i: int, stencil: Array,
     right: Array,
 ) -> None:  # fmt: skip
-    """The balance of a column that rests, see resting.py: its residual alone."""
+    """The balance of a column that rests, see states.py: its residual alone."""
     k = past.shape[1]
     near, rise = gap_along(ring[GAP, i], ring[SIN, i], ring[COS, i], motion)
     for j in range(k):

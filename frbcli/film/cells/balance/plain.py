@@ -115,7 +115,7 @@ class CellBalances:
     def fluxes(self, pressure: Array, theta: Array) -> tuple[Fluxes, EndFlow, EndFlow]:
         """Flows for pressures and oil fractions (m, k), and those at the ends with their derivatives.
 
-        The surfaces carry the oil of a part-filled film with the limited oil fraction of carried.py, what a full film
+        The surfaces carry the oil of a part-filled film with the limited oil fraction of states.py, what a full film
         is compressed by as it is at the face (second order).
         """
         c = self.conductances

@@ -7,10 +7,10 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.cells.balance.balances import falls_to_air, flow_at_end, section_end
+from frbcli.film.cells.balance.grid_motion import GridMotion, seen_by_grid
 from frbcli.film.cells.balance.states import PRESSURE, STATES
 from frbcli.film.cells.data import CLOSED, UNKNOWN, VolumeFilms, volume_films
 from frbcli.film.cells.film import Motion, VolumeFilm
-from frbcli.film.cells.tilted.motion import GridMotion, seen_by_grid
 
 
 @compiled(makes_arrays=True)

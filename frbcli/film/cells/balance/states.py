@@ -33,7 +33,7 @@ from frbcli.film.cells.data import CLOSED, GIVEN, GIVEN_PRESSURE, NO_CLIP, UNKNO
 # Layers of the states of the cells: of the law, the slopes by w last; the free gas that comes into the cell, and the
 # rate of its oil, as the law takes them, see balance.py in gas/, the free gas of the cell and how much of the incoming
 # gas it has at the same pressure; the oil fraction before the cell upstream of the face after each cell, as it is held,
-# see carried.py; and, in the first cell of a column, whether the oil of the column stays constant, see resting.py.
+# see limited; and, in the first cell of a column, whether the oil of the column stays constant.
 (
     PRESSURE,
     FRACTION,

@@ -15,10 +15,10 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.compiled import Indices, compiled
 from frbcli.film.cells.balance.balances import CHANNELS_NET
+from frbcli.film.cells.balance.faces import press_cells
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, pressure_of
 from frbcli.film.cells.block_cyclic import CENTRE
 from frbcli.film.cells.data import EXCHANGE, FEED_HOLE, SIDES, Records
-from frbcli.film.cells.tilted.faces import press_cells
 
 
 @compiled()

@@ -40,6 +40,7 @@ from numpy.typing import NDArray
 from frbcli.arrays import Array
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.law import CellState, Law, Scales
+from frbcli.film.cells.balance.grid_motion import seen_by_grid
 from frbcli.film.cells.balance.states import (
     CARRIED_GAS,
     FRACTION,
@@ -63,7 +64,6 @@ from frbcli.film.cells.gas.carry import (
 )
 from frbcli.film.cells.loads import pushing
 from frbcli.film.cells.mesh.grid import VolumeGrid
-from frbcli.film.cells.tilted.motion import seen_by_grid
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_matrix
@@ -248,7 +248,7 @@ class LinearStates(NamedTuple):
     the rates of the states, storage (2 n, 2 n); by displacement and velocity over the clearance, by_place and by_rate
     (2 n, c); by omega_J + omega_S, by_total (2 n,); of the c loads in N, push (c, 2 n), and of the share of Couette's
     torque, sheared (2 n,). c: the 2 of the displacement, or 4 with its growth over the width, see film_changes of
-    steady_force.py."""
+    linearised.py."""
 
     flow: csc_matrix
     storage: csc_matrix

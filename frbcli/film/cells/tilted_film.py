@@ -1,4 +1,9 @@
-"""Force and moments of a steady film whose journal moves and tilts, with all derivatives.
+"""Films whose journals tilt as arrays for the compiled kernels: the lands of all films of a machine side by side.
+
+The coordinates of a journal are its displacements at both ends of its bearing, over the clearance: (near x, near y,
+far x, far y), near at z = -B/2. In between its displacement is linear along the axis, and so is the gap.
+
+Force and moments of a steady film whose journal moves and tilts, with all derivatives.
 
 The coordinates q = (x, y, tilt_x, tilt_y) of the journal in the middle of the bearing move the journal over a land by
 u = P q / C, its displacement in the middle of the land and the growth of this over the width, over the clearance. The
@@ -13,12 +18,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from frbcli.arrays import Array
+from frbcli.compiled import Indices
 from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.law import Law
+from frbcli.film.cells.block_cyclic import TILTED, ring_solver
+from frbcli.film.cells.data import TIGHTLY, Records, places_along, volume_films
 from frbcli.film.cells.film import Motion, Path, VolumeFilm, VolumeSolution
 from frbcli.film.cells.linearised import LinearFilm, film_at, film_changes, linear_cells, lying
 from frbcli.film.cells.loads import FilmLoads, GasBalance, OilBalance, Torque, pushed, pushing
@@ -26,6 +35,38 @@ from frbcli.film.cells.mesh.grid import tilted_cells, volume_grid
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section, graded_ring
 from frbcli.film.rectangles.film import FieldSlopes, FilmForce
+
+
+class TiltedVolumes(NamedTuple):
+    """Lands of equal numbers of cells m x k; films, ring, cells: as VolumeFilms has them, of each land.
+
+    places: (lands, PLACES, k + 1) along the axis of the bearing; first: (films + 1,) first land of each film, and their
+    number.
+    """
+
+    films: Records
+    ring: Array
+    cells: Array
+    places: Array
+    first: Indices
+
+
+def tilted_volumes(
+    films: Sequence[TiltedFilm], settled: float = TIGHTLY, centrifugal: Sequence[float] = ()
+) -> TiltedVolumes:
+    """The films as arrays; all lands have grids of the same shape. settled, centrifugal (films,): see FILM."""
+    lands = [land for film in films for land in film.lands]
+    drops = [drop for film, drop in zip(films, centrifugal, strict=False) for _ in film.lands]
+    data = volume_films([land.film for land in lands], drops, settled)
+    k = lands[0].film.grid.shape[1]
+    grids = [land.film.grid for land in lands]
+    places = np.array([
+        places_along(land.places(grid.height), land.places(grid.z), np.diff(grid.z))
+        for land, grid in zip(lands, grids, strict=True)
+    ])  # fmt: skip
+    data.films["solver_at"] = ring_solver(k, TILTED)
+    first = np.cumsum([0, *(len(film.lands) for film in films)])
+    return TiltedVolumes(data.films, data.ring, data.cells, places, first)
 
 
 @dataclass(frozen=True)

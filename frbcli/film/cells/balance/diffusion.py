@@ -23,6 +23,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
+from frbcli.film.cells.balance.grid_motion import GridMotion, add_by_motion, gap_along
 from frbcli.film.cells.balance.plain_diffusion import GAMMA, PECLET
 from frbcli.film.cells.balance.states import FRACTION, FRACTION_SLOPE, PRESSURE, PRESSURE_SLOPE
 from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE
@@ -46,7 +47,6 @@ from frbcli.film.cells.data import (
     SIN,
     UNKNOWN,
 )
-from frbcli.film.cells.tilted.motion import GridMotion, add_by_motion, gap_along
 
 
 class Face(NamedTuple):

@@ -1,1 +1,0 @@
-"""Journals that tilt: their motion, flows and forces as kernels see them; lands, steady forces with derivatives."""

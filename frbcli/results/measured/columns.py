@@ -1,0 +1,136 @@
+"""Columns of numbers from a file of a measuring instrument, by their names."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from frbcli.arrays import Array
+from frbcli.errors import FEW, InputError, did_you_mean, input_error, nearest, printable
+from frbcli.results.records import LARGEST
+
+if TYPE_CHECKING:
+    pass
+from frbcli.results.measured.delimited import without_unit
+
+LARGEST_FILE = 1024**3  # bytes
+
+
+# Units at the end of a name, such as time_ms, speed_rpm, journal_x_m; one letter counts behind an underscore alone
+_LONG = "ms|us|µs|sec|Hz|hz|kHz|rpm|RPM|krpm|rad/s|mm|um|µm|nm|cm|mil|mils|micron|microns"
+
+
+SUFFIX = re.compile(rf".+(?:_(?:in_)?({_LONG}|s|m)|\s({_LONG}))")
+
+
+ITSELF = re.compile(r"rpm|RPM|Hz|U/min|1/min|min-1|r/min|rev/min|cpm|krpm|[Ss]econds?")  # names that are a unit
+
+
+INTERVAL = re.compile(r"(?:dt|ts|t_?s|.*(?:increment|interval|delta[_ ]?[tx]|step|period).*)", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Columns (n,) of a file by their names.
+
+    rate: samples per second where the file states it, as WAV does; numbers: single numbers besides the columns, such as
+    a sampling rate; units: of columns that have one in the file; lines: of a text, the number of the line of each row;
+    doubtful: what is wrong with columns that cannot be used; shapes: of variables as they are in the file, where that
+    has shapes; own_times: times in s (m,) of columns (m,) that were sampled at others than the rest.
+    """
+
+    path: Path
+    values: Mapping[str, Array]
+    rate: float | None = None
+    units: Mapping[str, str] = field(default_factory=dict)
+    lines: tuple[int, ...] | None = None
+    doubtful: Mapping[str, str] = field(default_factory=dict)
+    numbers: Mapping[str, float] = field(default_factory=dict)
+    shapes: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    own_times: Mapping[str, Array] = field(default_factory=dict)
+
+    def __getitem__(self, name: str) -> Array:
+        """A column. Raises InputError if there is none of this name, or its values are not finite."""
+        column = self.values[self.named(name)]
+        with np.errstate(invalid="ignore"):
+            good = np.abs(column) <= LARGEST  # NaN is not
+        if not np.all(good):
+            first = int(np.argmin(good))
+            what = f"the number {column[first]:g}" if np.isfinite(column[first]) else "no number"
+            raise wrong_file(
+                self.path, f'has {what} in {self.row(first)} of the column "{name}".', "Leave such rows out."
+            )
+        return column
+
+    def named(self, name: str) -> str:
+        """The name of a column in the file; `name` may leave out the unit at its end. Raises InputError if there is no
+        such column, or it cannot be used."""
+        if name in self.values:
+            return name
+        for known in (name, name.rpartition(".")[0]):  # columns of a matrix are called after it
+            if known in self.doubtful:
+                parts = [f'"{part}"' for part in self.values if part.rpartition(".")[0] == known]
+                remedy = f"Write {' or '.join(parts[:FEW])}." if parts else "Name a column of real numbers."
+                raise wrong_file(self.path, f'"{known}" {self.doubtful[known]}.', remedy)
+        alike = [known for known in self.values if without_unit(known) == name]
+        if len(alike) == 1:
+            return alike[0]
+        if name in self.numbers:
+            problem = f'"{name}" is the single number {self.numbers[name]:g}, not a column.'
+            raise wrong_file(self.path, problem, self._known())
+        meant = did_you_mean(name, self.values) + " " if nearest(name, self.values) else ""
+        raise wrong_file(self.path, f'has no column "{name}".', meant + self._known())
+
+    def unit(self, name: str) -> str | None:
+        """The unit of a column, None where the file does not state it."""
+        return self._unit(self.named(name))
+
+    def _unit(self, name: str) -> str | None:
+        return self.units.get(name) or unit_in(name)
+
+    def row(self, place: int) -> str:
+        """The name of a row, counted from 0 here and from 1 in the name."""
+        return f"row {place + 1}" + (f" (line {self.lines[place]})" if self.lines else "")
+
+    def listed(self) -> list[dict[str, Any]]:
+        """The content of the file, in its order: name, shape in the file, unit, and its kind where it is no column."""
+        rows: list[dict[str, Any]] = []
+        for name, values in self.values.items():
+            shape = self.shapes.get(name) or self.shapes.get(name.rpartition(".")[0]) or (len(values),)
+            rows.append({"name": name, "shape": list(shape), "unit": self._unit(name), "kind": "column"})
+        for name, value in self.numbers.items():
+            rows.append({"name": name, "shape": [1, 1], "unit": None, "kind": f"number {value:.10g}"})
+        for name, reason in self.doubtful.items():
+            shape = self.shapes.get(name, ())
+            rows.append({"name": name, "shape": list(shape), "unit": None, "kind": f"not usable: {reason}"})
+        return rows
+
+    def _known(self) -> str:
+        names = [f'"{printable(name)}"' for name in self.values]
+        if len(names) <= FEW:
+            return f"It has: {', '.join(names)}."
+        return f"It has {len(names)} columns: `frb waterfall {self.path.name} --columns` lists them."
+
+
+def unit_in(name: str) -> str | None:
+    """The unit that a name ends with or is, None if there is none."""
+    plain = without_unit(name).strip()
+    if ITSELF.fullmatch(plain):
+        return plain
+    match = SUFFIX.fullmatch(plain)
+    return None if match is None else match.group(1) or match.group(2)
+
+
+def is_interval(name: str) -> bool:
+    """Whether the name of a number says that it is the time from sample to sample."""
+    return INTERVAL.fullmatch(name.strip()) is not None
+
+
+def wrong_file(path: Path, problem: str, remedy: str) -> InputError:
+    """The error of the file of a measurement."""
+    return input_error(f"measurement {path}", "file", "", problem, remedy)
