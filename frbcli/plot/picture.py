@@ -35,7 +35,7 @@ PICTURES = {  # class of a result: module in this room, and its function
     "Response": "machine.response:response_figure",
     "Run": "run.summary:summary_figure",
     "Stability": "machine.modes:campbell_figure",
-    "StabilityMap": "machine.maps:stability_map_figure",
+    "StabilityMap": "machine.stability_map:stability_map_figure",
     "Sweep": "sweep:sweep_figure",
     "ThrustSheet": "machine.thrust:thrust_figure",
 }

@@ -16,10 +16,11 @@ from frbcli.elements.thrust import COLLAR
 from frbcli.results.records import WHOLE
 from frbcli.results.store import Run
 from frbcli.runs.header import forcing
-from frbcli.runs.heat import hot_film, number_of
+from frbcli.runs.heat import hot_film
 from frbcli.runs.march import UNBOUNDED
+from frbcli.runs.record.restored import number_of
 from frbcli.scene.changes import case_at, step_times
-from frbcli.scene.course import coupling_of
+from frbcli.scene.coupling import coupling_of
 from frbcli.scene.films import film_places
 from frbcli.scene.planning.cell_choice import expected_eccentricity, gap_ratio
 from frbcli.scene.planning.film_choice import choose_films, form_of

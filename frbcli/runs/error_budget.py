@@ -19,14 +19,14 @@ from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.runs.films import oil_defect
 from frbcli.runs.inputs import films_change
 from frbcli.runs.start import control_of
-from frbcli.scene.course import coupling_named
+from frbcli.scene.coupling import coupling_named
 from frbcli.scene.films import bearing_springs
 from frbcli.scene.machine.rotor import element_springs
 from frbcli.scene.machine.system import Segment, System
 from frbcli.scene.machine.turbocharger import shaft_of
 from frbcli.scene.planning.cell_choice import gap_ratio
 from frbcli.scene.planning.film_choice import Plan
-from frbcli.solve.stage.contact import felt_motion
+from frbcli.solve.stage.forces import felt_motion
 from frbcli.solve.state import ERROR_LARGEST, ERRORS_LARGEST, ERRORS_SUM, State
 from frbcli.solve.time_loop import NEWTON_SHARE
 

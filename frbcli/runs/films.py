@@ -31,10 +31,10 @@ from frbcli.results import store
 from frbcli.rotor.assembly import PLANE, LinearRotor, unbalance_shares
 from frbcli.rotor.loads import loads_at
 from frbcli.runs.header import FLOW, FORCE, FRICTION, POWER, SHARE, THICKNESS, TORQUE, signal_names, tilt_names
-from frbcli.runs.heat import WrongCheckpoint, array
 from frbcli.runs.inputs import FilmNumbers, Rotation, friction_signal, unchanged
+from frbcli.runs.record.restored import WrongCheckpoint, array
 from frbcli.scene.machine.system import System
-from frbcli.solve.stage.contact import felt_motion, touches
+from frbcli.solve.stage.forces import felt_motion, touches
 from frbcli.solve.state import GRID, SLIP, SUM, TIME, Control, State
 from frbcli.solve.time_loop import DRAG, FILLED, LEAVES
 

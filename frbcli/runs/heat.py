@@ -1,11 +1,8 @@
 """The heat of a run: what the time loop carries along, its signals, and its balance.
-
-The state of a checkpoint, checked against the machine of the run, since the compiled time loop does not check it.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 
 import numpy as np
@@ -15,19 +12,14 @@ from frbcli.case.over_time import first
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.kinds.contract import Films
-from frbcli.results.container import refuse
-from frbcli.results.records import SPEED as SPEED_SIGNAL
-from frbcli.results.records import TIME as TIME_SIGNAL
-from frbcli.results.records import pieces
 from frbcli.results.store import Run
-from frbcli.rotor.loads import SpeedProfile
 from frbcli.runs.inputs import FilmNumbers, signal_of
+from frbcli.runs.record.restored import WrongCheckpoint, array, number_of
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.heat import Heat, heat_of, warm_system
 from frbcli.scene.machine.system import System
 from frbcli.scene.planning.film_choice import Plan
 from frbcli.solve.heat import COLUMNS, NARROWEST, NO_HEAT, LumpedHeat, NoHeat, columns_of
-from frbcli.solve.state import NUMBERS, OUTPUTS, PIECE, RUN_END, STEP, STEP_DONE, TIME, State
 from frbcli.thermal.exchange import (
     BOOKS,
     CARRIED,
@@ -48,74 +40,6 @@ from frbcli.thermal.exchange import (
     arrays_of,
 )
 from frbcli.thermal.model import clearances_at, closed_gap, viscosities_at
-
-SAME = 1e-9  # share of the longest time or highest speed that is round-off
-LARGEST = 1e30  # of any number, in SI
-
-
-class WrongCheckpoint(Exception):
-    """The checkpoint of a run is not one of this machine and its speeds; says why."""
-
-
-def restored(checkpoint: Mapping[str, Array], fresh: State, profile: SpeedProfile, output_step: float) -> State:
-    """The state of a checkpoint. fresh: the state at the beginning of the run; output_step: of its samples, s.
-
-    Raises WrongCheckpoint unless all arrays are there, of the same shape as at the beginning, with finite numbers, and
-    time, piece of the profile and number of samples fit together.
-    """
-    state = State(*(array(checkpoint, name, part.shape) for name, part in fresh._asdict().items()))
-    numbers, times = state.numbers, profile.times
-    t, piece, outputs = numbers[TIME], numbers[PIECE], numbers[OUTPUTS]
-    fits = (
-        numbers[RUN_END] == fresh.numbers[RUN_END]
-        and np.all(numbers[:NUMBERS] >= 0.0)
-        and min(numbers[STEP], numbers[STEP_DONE]) > 0.0
-        and piece in range(len(times) - 1)
-        and times[int(piece)] <= t <= times[int(piece) + 1]
-        and float(outputs).is_integer()
-        and math.isclose(outputs, t / output_step + 0.5, abs_tol=0.5 + 1e-6)
-    )
-    if not fits:
-        raise WrongCheckpoint("its numbers are inconsistent")
-    return state
-
-
-def check_samples(run: Run, count: int, profile: SpeedProfile, output_step: float, is_free: bool) -> None:
-    """Raise WrongCheckpoint unless a run had `count` samples at its checkpoint, at the times and speeds of this one.
-    is_free: whether the speed is free, and does not follow the profile."""
-    if run.checkpoint_samples != count:
-        raise WrongCheckpoint(f"it belongs to {count} samples, not {run.checkpoint_samples}")
-    fastest = float(np.max(np.abs(profile.speeds)))
-    for begin, end in pieces(0, count):
-        times: Array = output_step * np.arange(begin, end, dtype=np.float64)
-        speeds = profile.speed(times)
-        turned = speeds if is_free else 2.0 * math.pi * run.read(SPEED_SIGNAL, begin, end)
-        late = np.abs(run.read(TIME_SIGNAL, begin, end) - times).max()
-        off = np.abs(turned - speeds).max()
-        if late > SAME * profile.end or off > SAME * fastest:
-            raise WrongCheckpoint("its samples have other times or speeds")
-
-
-def number_of(run: Run, name: str, place: int) -> float | None:
-    """The number at a place of an array in the checkpoint of a run; None where there is none. Raises RunFileError for
-    an array that has no such number."""
-    if run.checkpoint is None or name not in run.checkpoint:
-        return None
-    numbers = np.asarray(run.checkpoint[name])
-    if numbers.ndim != 1 or len(numbers) <= place or not abs(numbers[place]) <= LARGEST:
-        raise refuse(run.path, f"has a checkpoint whose {name} do not belong to a run.", "Run the case again.")
-    return float(numbers[place])
-
-
-def array(checkpoint: Mapping[str, Array], name: str, shape: tuple[int, ...]) -> Array:
-    """A copy of an array of a checkpoint. Raises WrongCheckpoint unless it has that shape and finite numbers."""
-    copied = np.array(checkpoint[name]) if name in checkpoint else None
-    if copied is None or copied.dtype != np.float64 or copied.shape != shape:
-        raise WrongCheckpoint(f"{name} is missing or has another shape")
-    if not np.all(np.abs(copied) <= LARGEST):
-        raise WrongCheckpoint(f"{name} holds invalid numbers")
-    return copied
-
 
 QUANTITIES = ("temperature_{}_K", "viscosity_{}_Pa_s", "clearance_{}_m", "power_{}_W", "flow_{}_m3_s")
 AT_END = [POWER, FLOW]  # what the films did at the end of a step, from which the signals go on

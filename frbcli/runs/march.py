@@ -26,7 +26,7 @@ from frbcli.runs.films import (
     tilt_signals,
 )
 from frbcli.runs.header import FLOW, named, pin_signals, recorded, ring_names
-from frbcli.runs.heat import RunHeat, WrongCheckpoint, array, check_samples, restored
+from frbcli.runs.heat import RunHeat
 from frbcli.runs.inputs import (
     FilmNumbers,
     RunInputs,
@@ -39,6 +39,7 @@ from frbcli.runs.inputs import (
     rotation_of,
     supplied,
 )
+from frbcli.runs.record.restored import WrongCheckpoint, array, check_samples, restored
 from frbcli.runs.start import (
     control_of,
     first_state,
@@ -50,7 +51,8 @@ from frbcli.runs.start import (
     with_unbalance,
 )
 from frbcli.scene.cost import expected_cost, film_error_s
-from frbcli.scene.course import coupling_named, expected_course
+from frbcli.scene.coupling import coupling_named
+from frbcli.scene.course import expected_course
 from frbcli.scene.machine.system import Segment, System, make_segments
 from frbcli.scene.planning.film_choice import Plan
 from frbcli.scene.supply import advised

@@ -27,14 +27,15 @@ from frbcli.rotor.loads import SpeedProfile, loads_at, no_part
 from frbcli.rotor.port import port_forces
 from frbcli.runs.films import displacement, grid_angle
 from frbcli.runs.inputs import rotation_of
-from frbcli.scene.course import coupling_named, longest_step, steps_of_a_turn
+from frbcli.scene.coupling import coupling_named
+from frbcli.scene.course import longest_step, steps_of_a_turn
 from frbcli.scene.machine.system import System
 from frbcli.scene.planning.film_choice import Plan
 from frbcli.solve.cosimulation import CO_NUMBERS, FILMS_REMEMBER, MICRO_REJECTED, MICRO_STEP, MICRO_STEPS
 from frbcli.solve.drive import DrivenRotor
 from frbcli.solve.films.cells import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
 from frbcli.solve.inputs import RADIUS, STIFFNESS, Inputs
-from frbcli.solve.stage.contact import RoughContact, make_cones, make_ports, varying_loads
+from frbcli.solve.stage.forces import RoughContact, make_cones, make_ports, varying_loads
 from frbcli.solve.state import (
     ERROR_BEFORE,
     ERROR_SPANS,

@@ -24,7 +24,6 @@ from frbcli.solve.films.steps import accept_films, begin_stage, most_iterations,
 from frbcli.solve.heat import NO_HEAT, AcceptedStep, begin_heat, carry_heat, warm_stage, write_heat
 from frbcli.solve.inputs import Rings, make_rings, pinned, set_inputs, set_speeds, spin_up, supply_warm
 from frbcli.solve.scratch import Scratch, make_scratch, rotation
-from frbcli.solve.stage.contact import add_loads, prepare_cones, prepare_loads, solve_columns, turn_cones
 from frbcli.solve.stage.equations import (
     FORCE,
     LAG_SWEEPS,
@@ -43,6 +42,7 @@ from frbcli.solve.stage.equations import (
     prepare,
     start_stage,
 )
+from frbcli.solve.stage.forces import add_loads, prepare_cones, prepare_loads, solve_columns, turn_cones
 from frbcli.solve.stage.journal_newton import forces
 from frbcli.solve.state import (
     CONTACT,

@@ -17,8 +17,8 @@ from frbcli.arrays import Array
 from frbcli.compiled import by_types, compiled, type_of
 from frbcli.solve.films.forces import drag_integral, keep_oil, leaving, oil_share, set_scale
 from frbcli.solve.films.steps import CELLS, kind_of
-from frbcli.solve.stage.contact import feel, rubbing
 from frbcli.solve.stage.equations import FORCE, OMEGA, X_0, U
+from frbcli.solve.stage.forces import feel, rubbing
 from frbcli.solve.state import OVERHEATED, RUNNING, SLIP, RotorData
 from frbcli.thermal.exchange import (
     BOOKS,

@@ -33,8 +33,8 @@ from frbcli.solve.films.forces import drag_integral
 from frbcli.solve.films.steps import by_kind
 from frbcli.solve.heat import LumpedHeat, NoHeat, have_heat
 from frbcli.solve.scratch import Scratch
-from frbcli.solve.stage.contact import feel, row_at, rubbing
 from frbcli.solve.stage.equations import FORCE, OMEGA, X_0, Q, U, V
+from frbcli.solve.stage.forces import feel, row_at, rubbing
 from frbcli.solve.state import GRID, SLIP, SUM, Control, RotorData
 from frbcli.thermal.exchange import SCALE, SHARE_OF_SUPPLY, SUPPLY
 

@@ -16,8 +16,8 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.rotor import loads as speed_profile
-from frbcli.solve.stage.contact import prepare_cones, prepare_loads
 from frbcli.solve.stage.equations import JOURNAL_ROWS, STAGE_ROWS, STANDING, prepare
+from frbcli.solve.stage.forces import prepare_cones, prepare_loads
 from frbcli.solve.state import INVERSE_G, INVERSE_SPEED, RotorData
 
 

@@ -50,11 +50,11 @@ class RotorData(NamedTuple):
     table_damping: Array
     table_stiffness: Array
     follows_speed: bool  # whether the inverse is renewed at every change of the speed
-    loads: Any = ()  # that change with the angle of the rotor or with time, see stage/contact.py
+    loads: Any = ()  # that change with the angle of the rotor or with time, see stage/forces.py
     inputs: Any = ()  # that change with time, see inputs.py
     standing: Any = ()  # (journals, 2) m, where these are in their shells when the rotor has not moved; empty: centred
-    cones: Any = ()  # of rings that turn and tilt, see stage/contact.py
-    ports: Any = ()  # forces that are not linear, see stage/contact.py
+    cones: Any = ()  # of rings that turn and tilt, see stage/forces.py
+    ports: Any = ()  # forces that are not linear, see stage/forces.py
     drive: Any = ()  # of a rotor whose speed is free, see drive.py
 
 
@@ -62,7 +62,7 @@ class Control(NamedTuple):
     """Limits of the time loop. tolerance: local error of a displacement over the clearance; longest_step in s;
     steps_per_revolution: at least; output_step in s; contact_eccentricity; contact_stiffness in N/m, 0: stop there;
     linearised: a film is solved once in a stage, at its guess, and its force then followed by its derivatives (5.1);
-    rough: () or a RoughContact, see stage/contact.py."""
+    rough: () or a RoughContact, see stage/forces.py."""
 
     tolerance: float
     steps_per_revolution: float

@@ -45,17 +45,6 @@ from frbcli.solve.heat import (
 )
 from frbcli.solve.inputs import Inputs, Rings, guess_speeds, make_rings, set_inputs, set_speeds, spin_up, supply_warm
 from frbcli.solve.scratch import Scratch, make_scratch, selected
-from frbcli.solve.stage.contact import (
-    add_loads,
-    left_at_ports,
-    prepare_cones,
-    prepare_loads,
-    push_ports,
-    set_sliding,
-    shortest,
-    turn_cones,
-    turn_ports,
-)
 from frbcli.solve.stage.equations import (
     STANDING,
     U,
@@ -68,6 +57,17 @@ from frbcli.solve.stage.equations import (
     predict,
     prepare,
     start_stage,
+)
+from frbcli.solve.stage.forces import (
+    add_loads,
+    left_at_ports,
+    prepare_cones,
+    prepare_loads,
+    push_ports,
+    set_sliding,
+    shortest,
+    turn_cones,
+    turn_ports,
 )
 from frbcli.solve.stage.journal_newton import correct, forces
 from frbcli.solve.state import (

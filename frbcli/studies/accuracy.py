@@ -27,7 +27,8 @@ from frbcli.results.store import Run
 from frbcli.runs.error_budget import quiet_until
 from frbcli.runs.march import Progress
 from frbcli.runs.run import rundown, runup
-from frbcli.scene.course import COUPLINGS, chosen_coupling, coupling_named, default_speeds
+from frbcli.scene.coupling import COUPLINGS, chosen_coupling, coupling_named
+from frbcli.scene.course import default_speeds
 from frbcli.scene.gate.rule import LADDER
 from frbcli.scene.gate.static import require
 from frbcli.scene.machine.system import make_system

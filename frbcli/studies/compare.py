@@ -25,7 +25,7 @@ from frbcli.results.store import Run, check_output
 from frbcli.runs.header import POWER
 from frbcli.runs.march import Progress
 from frbcli.runs.run import PROFILES, earlier_run, is_interrupted, standing_run
-from frbcli.scene.course import COUPLINGS, chosen_coupling
+from frbcli.scene.coupling import COUPLINGS, chosen_coupling
 from frbcli.scene.gate.rule import COMPARISON
 from frbcli.scene.gate.static import require
 from frbcli.scene.planning.kinematic_plan import TESTS as KINEMATIC_TESTS

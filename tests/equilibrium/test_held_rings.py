@@ -31,7 +31,7 @@ from frbcli.scene.gate.rule import BEARING, SPEED_CYCLES, STABILITY
 from frbcli.scene.gate.static import faults
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
-from frbcli.solve.stage.contact import feel, push_back
+from frbcli.solve.stage.forces import feel, push_back
 from frbcli.solve.state import Control
 
 SPEED, OMEGA, INERTIA = 100.0, 200.0 * math.pi, 20e-6  # Hz, rad/s, kg m^2

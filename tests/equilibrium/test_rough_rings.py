@@ -22,7 +22,7 @@ from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.loads import speed_profile
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
-from frbcli.solve.stage.contact import RoughContact
+from frbcli.solve.stage.forces import RoughContact
 from frbcli.solve.state import Control
 
 LIFTING = pytest.param(4.0, False, marks=pytest.mark.nightly)  # a ring that slides is sought for seconds

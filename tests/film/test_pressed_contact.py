@@ -27,8 +27,8 @@ from frbcli.scene.planning.cell_choice import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.films.cells import EMPTY, OPEN, cell_response, move_even
 from frbcli.solve.films.steps import make_work
-from frbcli.solve.stage.contact import push_back
 from frbcli.solve.stage.equations import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, U_0, X_0, FilmMotion, U
+from frbcli.solve.stage.forces import push_back
 from frbcli.solve.stage.journal_newton import forces
 from frbcli.solve.state import FINISHED, RUNNING, Control
 

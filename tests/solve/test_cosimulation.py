@@ -16,7 +16,7 @@ from frbcli.errors import InputError
 from frbcli.runs.march import control_of
 from frbcli.runs.run import runup
 from frbcli.runs.start import first_state, in_turn, micro_cost, rotor_data
-from frbcli.scene.course import COUPLINGS, chosen_coupling
+from frbcli.scene.coupling import COUPLINGS, chosen_coupling
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.cell_choice import run_up_profile
 from frbcli.scene.planning.plan import make_plan

@@ -132,7 +132,7 @@ def _animate(
 
 def _law(source: str, settings: tuple[str, ...], output: Path | None, terminal: Terminal) -> None:
     from frbcli.case.reading.load import load_case
-    from frbcli.plot.machine.maps import law_figure
+    from frbcli.plot.machine.law import law_figure
 
     case = load_case(source, settings)
     target = output or here(case.name, f"-{LAW}.png")

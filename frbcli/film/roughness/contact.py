@@ -2,7 +2,7 @@
 
 Smooth surfaces on an elastic shell, with a journal pressed into it: what its film feels, and what pushes it back.
 
-The time loop has the same in solve/stage/contact.py.
+The time loop has the same in solve/stage/forces.py.
 
 The asperities of one film, which act in parallel to it: force with derivatives, and loads.
 

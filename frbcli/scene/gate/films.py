@@ -30,7 +30,7 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import NO_BATH, ends_at_ambient
 from frbcli.film.section_faults import runs_dry, section_faults
 from frbcli.rotor.assembly import LinearRotor
-from frbcli.scene.course import coupling_of
+from frbcli.scene.coupling import coupling_of
 from frbcli.scene.films import (
     HOUSING,
     FilmPlace,

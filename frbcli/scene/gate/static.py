@@ -21,7 +21,8 @@ from frbcli.case.schema import Case
 from frbcli.elements.pin import PinElement
 from frbcli.errors import Fault, InputError
 from frbcli.film.cavitation.table import law_named
-from frbcli.scene.course import coupling_of, default_speeds, keeps_oil
+from frbcli.scene.coupling import coupling_of
+from frbcli.scene.course import default_speeds, keeps_oil
 from frbcli.scene.films import (
     HOUSING,
     FilmPlace,

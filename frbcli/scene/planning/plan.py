@@ -30,14 +30,8 @@ from frbcli.film.pad_geometry import COARSE, MESH
 from frbcli.rotor.loads import SpeedProfile
 from frbcli.scene.changes import clearance_decisions, drive_decisions, input_decisions, loss_decisions
 from frbcli.scene.cost import ExpectedCost, clock, expected_cost, memory_B
-from frbcli.scene.course import (
-    ERROR_ORDERS,
-    FULL,
-    coupling_named,
-    plan_coupling,
-    reference_length,
-    resolution_decisions,
-)
+from frbcli.scene.coupling import FULL, coupling_named, plan_coupling
+from frbcli.scene.course import ERROR_ORDERS, reference_length, resolution_decisions
 from frbcli.scene.films import coupled, film_places, opens_to_groove, resistance, rings, turning_rings, turns_with_oil
 from frbcli.scene.gate.rule import RUN
 from frbcli.scene.gate.static import require

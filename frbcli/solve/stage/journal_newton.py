@@ -11,7 +11,6 @@ from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.dense import solve_dense
 from frbcli.solve.films.forces import film_response, follow_channels, join_films, meet_films, move_film
-from frbcli.solve.stage.contact import feel, press, push_back, sharpness, shell_ahead
 from frbcli.solve.stage.equations import (
     BY_X,
     BY_Y,
@@ -26,6 +25,7 @@ from frbcli.solve.stage.equations import (
     U,
     norm,
 )
+from frbcli.solve.stage.forces import feel, press, push_back, sharpness, shell_ahead
 from frbcli.solve.state import Control
 
 CLOSEST = 0.5  # share of the gap, see shell_ahead, that one Newton correction may close

@@ -1,34 +1,16 @@
-"""Contact of journal and shell in a stage: elastic, rough, at the ends of a tilted journal.
+"""What acts in a stage of the time loop besides its films: contact of journal and shell, gyroscopic moments of rings
+that turn and tilt, loads, and forces at ports. Compiled.
 
-Elastic contact of journals and shells in the time loop, compiled: what films feel of it, and what it pushes with.
+A machine without one of them has an empty tuple in its place, for which nothing is computed: that is decided by the
+types of the data when the loop is compiled.
 
-Rough surfaces in the time loop, compiled: the summits of journals and shells, in parallel to their films.
-
-Whether a machine has any is decided by the type of `Control.rough` when the loop is compiled: between smooth surfaces
-it is empty, and nothing is computed.
-
-Gyroscopic moments of rings that turn and tilt, cartridges, in a stage of the time loop. Compiled. Two kinds:
-
-- an empty tuple: a machine without them, for which nothing is computed;
+- Contact, elastic, rough, or at the ends of a tilted journal: what films feel of it, and what it pushes with, in
+  parallel to them. Whether surfaces are rough is the type of `Control.rough`.
 - Cones: a ring of polar inertia I that turns with w and has the slopes s pulls with -w I (s_y', -s_x') on them, which
   joins the acceleration FREE of each stage, see equations.py, by the velocities of the iteration before.
-
-Which of them a function means is decided by the type of the cones when the loop is compiled, as in loads.py.
-
-Loads that change with the angle of the rotor or with time, in a stage of the time loop. Compiled. Two kinds:
-
-- an empty tuple: a machine without them, for which nothing is computed;
-- VaryingLoads: they join the acceleration FREE of each stage, see equations.py.
-
-Which of them a function means is decided by the type of the loads when the loop is compiled, as in heat.py.
-
-Forces at ports, see rotor/port.py, in a stage of the time loop. Compiled. Two kinds:
-
-- an empty tuple: a machine without them, for which nothing is computed;
-- Ports: the displacements and velocities that they see are unknowns of Newton's method in addition to the journals',
-  which they follow in all arrays of a stage.
-
-Which of them a function means is decided by the type of the ports when the loop is compiled, as in loads.py.
+- VaryingLoads: loads that change with the angle of the rotor or with time join the acceleration FREE, too.
+- Ports, see rotor/port.py: the displacements and velocities that they see are unknowns of Newton's method in addition
+  to the journals', which they follow in all arrays of a stage.
 """
 
 from __future__ import annotations
