@@ -283,8 +283,8 @@ def _show_findings(case: Case, loads: Findings, terminal: Terminal) -> None:
 def _about_tilt(case: Case) -> str:
     """What results make of the tilt of journals, with the setting for it where the case allows it."""
     from frbcli.case.model import altered
+    from frbcli.scene.gate.gate import faults
     from frbcli.scene.gate.rule import RUN, STABILITY
-    from frbcli.scene.gate.static import faults
 
     if case.film.tilt == "follows":
         return "The films follow it."

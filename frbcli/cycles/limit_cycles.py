@@ -57,8 +57,9 @@ from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import Fault, FrbError, InputError, NotConverged, input_error
 from frbcli.linear.stability_point import threshold_at
 from frbcli.scene.course import default_speeds
+from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import CYCLES, SPEED_CYCLES, WHIRLS
-from frbcli.scene.gate.static import by_shooting, require
+from frbcli.scene.gate.static import by_shooting
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.film_choice import Plan
 from frbcli.scene.planning.plan import make_plan

@@ -37,8 +37,8 @@ from frbcli.equilibrium.resting import (
 )
 from frbcli.equilibrium.static_films import MeshFilms, StaticFilms, static_films
 from frbcli.errors import NotConverged
+from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import HEAT, STILL
-from frbcli.scene.gate.static import require
 from frbcli.scene.machine.heat import Heat, heat_of, warm_system
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.film_choice import Plan

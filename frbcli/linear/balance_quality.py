@@ -26,7 +26,7 @@ from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, Table, Tabular, table_of
 from frbcli.errors import input_error
-from frbcli.scene.gate.static import require
+from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.shaft import Shaft
 from frbcli.scene.machine.turbocharger import shaft_of
 from frbcli.units import SPEED, ValueFault, quantity

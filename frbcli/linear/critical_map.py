@@ -24,7 +24,7 @@ from frbcli.errors import Fault, InputError
 from frbcli.linear.modes import direct_springs
 from frbcli.linear.stability_point import StabilityPoint
 from frbcli.rotor.assembly import Link, assembled
-from frbcli.scene.gate.static import require
+from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.findings import findings
 from frbcli.scene.machine.rotor import first_without_film, support_faults
 from frbcli.scene.machine.turbocharger import shaft_of

@@ -22,7 +22,7 @@ from frbcli.linear.columns import NATURAL_MODES, SPEED
 from frbcli.rotor.loads import first_largest, ranks
 from frbcli.rotor.reduction import FreeModes, Reduction, ReductionError, whirl_modes
 from frbcli.scene.films import bearing_springs
-from frbcli.scene.gate.static import require
+from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.rotor import element_springs, support_faults
 from frbcli.scene.machine.turbocharger import shaft_of
 

@@ -49,8 +49,8 @@ from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.loads import BOW, Harmonic
 from frbcli.scene.changes import after_losses, has_lost, loss_times
 from frbcli.scene.course import default_speeds
+from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import FILMS, RANGE
-from frbcli.scene.gate.static import require
 from frbcli.scene.machine.rotor import element_forces, harmonics_of
 from frbcli.scene.machine.system import System, elastic_shell
 from frbcli.scene.machine.turbocharger import shaft_of

@@ -30,8 +30,8 @@ from frbcli.linear.stability_point import (
     with_errors,
 )
 from frbcli.scene.course import default_speeds
+from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import FILMS, RANGE, STABILITY
-from frbcli.scene.gate.static import require
 from frbcli.scene.machine.system import System
 from frbcli.scene.supply import advised
 from frbcli.units import SpeedUnit

@@ -26,7 +26,7 @@ from frbcli.runs.inputs import RunInputs, drive_units
 from frbcli.scene.changes import loss_times, step_times
 from frbcli.scene.machine.rotor import element_parts
 from frbcli.scene.machine.system import Segment, System
-from frbcli.solve.inputs import STIFFNESS
+from frbcli.solve.ring_spin import STIFFNESS
 
 PACKAGES = ("numpy", "scipy", "numba", "scikit-fem", "h5py")
 PROGRAM = "frbcli"

@@ -34,7 +34,8 @@ from frbcli.scene.planning.film_choice import Plan
 from frbcli.solve.cosimulation import CO_NUMBERS, FILMS_REMEMBER, MICRO_REJECTED, MICRO_STEP, MICRO_STEPS
 from frbcli.solve.drive import DrivenRotor
 from frbcli.solve.films.cells import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
-from frbcli.solve.inputs import RADIUS, STIFFNESS, Inputs
+from frbcli.solve.inputs import Inputs
+from frbcli.solve.ring_spin import RADIUS, STIFFNESS
 from frbcli.solve.stage.forces import RoughContact, make_cones, make_ports, varying_loads
 from frbcli.solve.state import (
     ERROR_BEFORE,

@@ -22,7 +22,8 @@ from frbcli.compiled import Indices, compiled
 from frbcli.solve.films.forces import move_film
 from frbcli.solve.films.steps import accept_films, begin_stage, most_iterations, write_oil
 from frbcli.solve.heat import NO_HEAT, AcceptedStep, begin_heat, carry_heat, warm_stage, write_heat
-from frbcli.solve.inputs import Rings, make_rings, pinned, set_inputs, set_speeds, spin_up, supply_warm
+from frbcli.solve.inputs import set_inputs, supply_warm
+from frbcli.solve.ring_spin import Rings, make_rings, pinned, set_speeds, spin_up
 from frbcli.solve.scratch import Scratch, make_scratch, rotation
 from frbcli.solve.stage.equations import (
     FORCE,

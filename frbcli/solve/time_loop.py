@@ -43,7 +43,8 @@ from frbcli.solve.heat import (
     warm_stage,
     write_heat,
 )
-from frbcli.solve.inputs import Inputs, Rings, guess_speeds, make_rings, set_inputs, set_speeds, spin_up, supply_warm
+from frbcli.solve.inputs import Inputs, set_inputs, supply_warm
+from frbcli.solve.ring_spin import Rings, guess_speeds, make_rings, set_speeds, spin_up
 from frbcli.solve.scratch import Scratch, make_scratch, selected
 from frbcli.solve.stage.equations import (
     STANDING,

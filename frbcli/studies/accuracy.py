@@ -29,8 +29,8 @@ from frbcli.runs.march import Progress
 from frbcli.runs.run import rundown, runup
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling, coupling_named
 from frbcli.scene.course import default_speeds
+from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import LADDER
-from frbcli.scene.gate.static import require
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.film_choice import DEFAULT_MESH, Plan
 from frbcli.scene.planning.plan import THEORIES, make_plan

@@ -26,8 +26,8 @@ from frbcli.runs.header import POWER
 from frbcli.runs.march import Progress
 from frbcli.runs.run import PROFILES, earlier_run, is_interrupted, standing_run
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
+from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import COMPARISON
-from frbcli.scene.gate.static import require
 from frbcli.scene.planning.kinematic_plan import TESTS as KINEMATIC_TESTS
 from frbcli.scene.planning.plan import THEORIES, cost_of_run, make_plan
 from frbcli.studies.against import COMMANDS, Ended, Report, RunTask, in_turn, side_by_side

@@ -30,7 +30,7 @@ from frbcli.errors import Fault, FrbError, InputError, did_you_mean, input_error
 from frbcli.results.records import SPEED, TIME
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
-from frbcli.scene.gate.static import require
+from frbcli.scene.gate.gate import require
 
 SPAN = 3.0  # factor by which a number may move either way, if no bounds are given
 STEP = 0.01  # relative change of a number for its derivatives: above what steps and onsets scatter by

@@ -26,8 +26,8 @@ from frbcli.linear.stability import stability_points
 from frbcli.runs.inputs import films_change, machine_inputs
 from frbcli.runs.record.interrupt import deaf
 from frbcli.runs.run import runup
+from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import BEARING, KINEMATIC, ROTATION, RUN, STABILITY
-from frbcli.scene.gate.static import faults
 from frbcli.scene.machine.rotor import element_parts
 from frbcli.scene.machine.turbocharger import shaft_of
 from frbcli.scene.planning.film_choice import Decision, form_of

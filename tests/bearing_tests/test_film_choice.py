@@ -6,8 +6,8 @@ import pytest
 
 from frbcli import load_case, rotation
 from frbcli.errors import InputError
+from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import ROTATION
-from frbcli.scene.gate.static import faults
 
 MOTION = 'motion={{film="{}", eccentricity=0.6, angle="-60 deg", speed="20 Hz"}}'
 ALONE = 'motion={eccentricity=0.6, angle="-60 deg", speed="20 Hz"}'

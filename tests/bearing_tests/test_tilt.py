@@ -17,7 +17,7 @@ from frbcli.bearing_tests.kinematic import KinematicResult
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cavitation.table import names
-from frbcli.scene.gate.static import faults
+from frbcli.scene.gate.gate import faults
 
 ROWS = list(csv.DictReader((DATA / "tilted-journal.csv").read_text(encoding="utf-8").splitlines()))
 REFERENCE = 1e-4  # of the largest force or moment of a row

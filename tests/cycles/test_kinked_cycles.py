@@ -18,8 +18,8 @@ from frbcli.cycles.shooting.rest import settled
 from frbcli.cycles.shooting.shots import Shooting, largest
 from frbcli.equilibrium.resting import resting_position
 from frbcli.linear.stability_point import critical_eigenvalue, eigenvalues
+from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import SPEED_CYCLES
-from frbcli.scene.gate.static import faults
 
 REYNOLDS = ("film.cavitation=reynolds", "accuracy.mesh=[6,32]")
 POCKET = '{kind="pocket", position="90 deg", opening_angle="30 deg", width="8 mm", pressure="2 bar"}'

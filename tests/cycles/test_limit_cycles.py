@@ -31,8 +31,8 @@ from frbcli.film.rectangles.film_force import film_force
 from frbcli.linear.stability import stability
 from frbcli.rotor.loads import speed_profile
 from frbcli.runs.start import control_of, rotor_data, state_at
+from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import SPEED_CYCLES
-from frbcli.scene.gate.static import faults
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import METHODS, RUNNING, make_output

@@ -25,8 +25,8 @@ from frbcli.linear.response import response
 from frbcli.linear.stability import stability
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.runs.run import rundown, runup
+from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import BEARING, ROTATION, RUN, SPEED_CYCLES, STABILITY
-from frbcli.scene.gate.static import faults
 from frbcli.scene.machine.findings import findings
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.system import System, make_system

@@ -17,8 +17,8 @@ from frbcli.linear.modes import natural_modes
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability
 from frbcli.runs.run import runup
+from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import RUN
-from frbcli.scene.gate.static import faults
 from frbcli.scene.machine.rotor import make_rotor
 
 M, U, K, SHAFT = 20.0, 1e-3, 5e7, 3e7  # kg, kg m; N/m of one bearing, of the shaft

@@ -27,8 +27,8 @@ from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.roughness.contact import ElasticShell
 from frbcli.plot.machine.bearing import bearing_figure
 from frbcli.rotor.loads import speed_profile
+from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import BEARING, SPEED_CYCLES, STABILITY
-from frbcli.scene.gate.static import faults
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.stage.forces import feel, push_back

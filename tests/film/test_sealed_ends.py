@@ -23,8 +23,8 @@ from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.end_flow import end_flow, make_end_flow
 from frbcli.film.rectangles.film import direct_force, evaluate, make_film
 from frbcli.scene.films import make_law
+from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import RUN
-from frbcli.scene.gate.static import faults
 
 MESH, FINE = Mesh(6, 96), Mesh(12, 192)
 WIDE = replace(PLAIN, width=30e-3, bearing_width=30e-3)

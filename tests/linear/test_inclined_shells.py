@@ -10,8 +10,8 @@ import pytest
 from frbcli import bearing_sheet, load_case, rotation, sommerfeld_chart
 from frbcli.linear.sheets.film_state import FilmState
 from frbcli.linear.stability import stability_points
+from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import RUN, STABILITY
-from frbcli.scene.gate.static import faults
 
 SPEED, CLEARANCE, WIDTH, MRAD = 50.0, 35e-6, 0.02, 0.5
 SHELL = 'bearing.misalignment=["{} mrad", "{} mrad"]'

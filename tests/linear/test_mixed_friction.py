@@ -18,8 +18,8 @@ from frbcli.errors import InputError
 from frbcli.film.roughness.plain import plain_touch
 from frbcli.linear.sheets.bearing import bearing_sheet
 from frbcli.linear.sheets.film_state import FilmState, MixedFriction
+from frbcli.scene.gate.gate import faults, require
 from frbcli.scene.gate.rule import BEARING, SPEED_CYCLES, STABILITY
-from frbcli.scene.gate.static import faults, require
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 

@@ -11,8 +11,8 @@ import pytest
 import frbcli
 from frbcli.cli.main import run
 from frbcli.errors import InputError
+from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import ALL
-from frbcli.scene.gate.static import faults
 
 SPEED = [2000.0]
 

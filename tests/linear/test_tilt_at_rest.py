@@ -25,8 +25,8 @@ from frbcli.linear.stability import stability_points
 from frbcli.linear.stability_point import StabilityPoint
 from frbcli.rotor.assembly import COORDINATES
 from frbcli.scene.forms.tilted import TiltedForm
+from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import RUN, STILL
-from frbcli.scene.gate.static import faults
 from frbcli.scene.machine.heat import warm_case
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.system import make_system

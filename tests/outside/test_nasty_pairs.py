@@ -16,8 +16,8 @@ from paths import ROOT
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import COMMANDS
 from frbcli.errors import InputError
+from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import BEARING, CYCLES, ROTATION, RUN, STABILITY, WHIRL
-from frbcli.scene.gate.static import require
 from frbcli.scene.planning.plan import make_plan
 
 BATCH, BATCHES = 48, 8

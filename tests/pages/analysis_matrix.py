@@ -13,6 +13,7 @@ from paths import DOCS
 from frbcli.case.reading.load import load_case
 from frbcli.errors import Fault, InputError
 from frbcli.scene.films import bearing_films
+from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import (
     BEARING,
     KINEMATIC,
@@ -25,7 +26,6 @@ from frbcli.scene.gate.rule import (
     WHIRL,
     WHIRLS,
 )
-from frbcli.scene.gate.static import require
 
 PAGE = DOCS / "matrix.md"
 MOTION = 'motion = { eccentricity = 0.5, angle = "-60 deg", speed = "20 Hz", frequency = "20 Hz" }'

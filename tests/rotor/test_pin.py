@@ -16,11 +16,11 @@ from frbcli.elements.pin import pin_torque
 from frbcli.errors import FrbError, InputError
 from frbcli.plot.run.quantities import quantity_figure
 from frbcli.rotor.loads import speed_profile
+from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import BEARING, SPEED_CYCLES, STABILITY
-from frbcli.scene.gate.static import faults
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
-from frbcli.solve.inputs import DAMPING, PLAY, STIFFNESS, pinned
+from frbcli.solve.ring_spin import DAMPING, PLAY, STIFFNESS, pinned
 from frbcli.solve.state import Control
 
 OMEGA, INERTIA = 200.0 * math.pi, 20e-6  # rad/s, kg m^2

@@ -27,8 +27,8 @@ from frbcli.rotor.assembly import COORDINATES, PLANE, without_spins
 from frbcli.rotor.loads import speed_profile
 from frbcli.runs.start import state_at
 from frbcli.scene.forms.tilted import TiltedForm
+from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import SPEED_CYCLES
-from frbcli.scene.gate.static import faults
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan

@@ -17,8 +17,8 @@ from frbcli.case.schema import Case
 from frbcli.cli.main import COMMANDS, command_named, run
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import InputError
+from frbcli.scene.gate.gate import faults, require
 from frbcli.scene.gate.rule import ALL
-from frbcli.scene.gate.static import faults, require
 from frbcli.scene.machine.system import make_system
 
 MOTION = 'motion = { eccentricity = 0.5, angle = "-60 deg", speed = "20 Hz", frequency = "20 Hz" }'

@@ -14,8 +14,8 @@ from frbcli.case.reading.load import case_from_dict
 from frbcli.cli.runs.transient import exit_code
 from frbcli.elements.collar import collar_of
 from frbcli.errors import InputError
+from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import CYCLES, LADDER, RUN
-from frbcli.scene.gate.static import faults
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.turbocharger import shaft_of
 from frbcli.scene.planning.plan import make_plan

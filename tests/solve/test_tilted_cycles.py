@@ -19,8 +19,8 @@ from frbcli.cycles.shooting.shots import Rest, Shooting
 from frbcli.linear.stability import stability_points
 from frbcli.rotor.assembly import PLANE
 from frbcli.scene.forms.tilted import TiltedForm
+from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import CYCLES, SPEED_CYCLES, WHIRLS
-from frbcli.scene.gate.static import faults
 from frbcli.scene.machine.rotor import make_rotor
 
 MESH = "accuracy.mesh=[4, 24]"  # 24 x 8 cells over the whole width

@@ -71,8 +71,8 @@ def command(
     from frbcli.errors import NotConverged
     from frbcli.linear.modes import natural_modes, own_reduction
     from frbcli.linear.stability import stability
+    from frbcli.scene.gate.gate import faults
     from frbcli.scene.gate.rule import CYCLES
-    from frbcli.scene.gate.static import faults
 
     if shapes is not None and (stiffness is not None or speeds):
         raise click.UsageError("--shapes stands alone: it is of one speed, on the films of the case.")

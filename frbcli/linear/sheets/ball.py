@@ -16,8 +16,8 @@ from frbcli.elements.ball import BallBearingElement, RestingRings, rating_life, 
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.linear.columns import BALL_SHEET
+from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import FILMS
-from frbcli.scene.gate.static import require
 
 Observer = Callable[[int, int], None]
 SPEEDS = 10

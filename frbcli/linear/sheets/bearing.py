@@ -26,8 +26,8 @@ from frbcli.film.contact_gap import closes_freely_until
 from frbcli.linear.columns import sheet_columns
 from frbcli.linear.sheets.film_state import FilmState, film_state, no_state, under_vertical_load
 from frbcli.scene.films import bearing_films
+from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import BEARING, CHART, LOADED
-from frbcli.scene.gate.static import require
 from frbcli.scene.supply import advised
 
 Observer = Callable[[int, int], None]

@@ -20,7 +20,7 @@ from frbcli.plot.style import (
     new_figure,
     styled,
 )
-from frbcli.scene.gate.static import require
+from frbcli.scene.gate.gate import require
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case

@@ -11,15 +11,14 @@ asking this gate.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
-from functools import partial
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.film import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.elements.pin import PinElement
-from frbcli.errors import Fault, InputError
+from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.scene.coupling import coupling_of
 from frbcli.scene.course import default_speeds, keeps_oil
@@ -27,49 +26,19 @@ from frbcli.scene.films import (
     HOUSING,
     FilmPlace,
     as_text,
-    channel_faults,
     coupled_rings,
     coupling_faults,
     film_places,
     is_plain,
-    tilts,
     turning_cartridges,
     turns_with_oil,
 )
-from frbcli.scene.forms.tilted import AT_REST, RUNS
-from frbcli.scene.gate import films, kinematic, static
-from frbcli.scene.gate.kinematic import choice_faults, key_in, tested_case
-from frbcli.scene.gate.rule import (
-    ALL,
-    BEARING,
-    CHART,
-    COMPARISON,
-    CYCLES,
-    EVERY_CYCLE,
-    FILMS,
-    HEAT,
-    KINEMATIC,
-    LADDER,
-    LOADED,
-    RANGE,
-    RUN,
-    SHEETS,
-    SPEED_CYCLES,
-    STABILITY,
-    STILL,
-    WHIRLS,
-    Faults,
-    Rule,
-)
 from frbcli.scene.keys import cavitation_keys
 from frbcli.scene.machine.rotor import (
-    element_faults,
     element_parts,
     harmonics_of,
     port_faults,
     speed_dependent,
-    stray_load_faults,
-    without_bearing,
     without_film,
 )
 from frbcli.scene.machine.turbocharger import shaft_of
@@ -364,107 +333,3 @@ def _turns(case: Case, place: FilmPlace) -> bool:
     return place.grid_body != HOUSING or turns_with_oil(case, place)
 
 
-def _of_films(of: Callable[[Case], Faults]) -> Callable[[Case], Faults]:
-    """A rule of films alone, which a machine without any does not break."""
-    return lambda case: of(case) if case.films else ()
-
-
-def _without_film(what: str) -> Callable[[Case], Faults]:
-    return lambda case: without_film(case, what)
-
-
-RULES = (
-    Rule(element_faults, ALL),
-    Rule(channel_faults, ALL),
-    Rule(films.pull_faults, ALL),
-    Rule(films.supply_faults, ALL),
-    Rule(films.limited_supply_faults, ALL),
-    Rule(films.bath_faults, ALL),
-    Rule(films.sealed_faults, ALL),
-    Rule(films.published_faults, ALL),
-    Rule(lambda case: films.published_tilt_faults(case, bool(case.bearings) and tilts(case)), KINEMATIC),
-    Rule(
-        lambda case: films.published_tilt_faults(case, form_of(case).inclines),
-        tuple(each for each in ALL if each not in KINEMATIC),
-    ),
-    Rule(films.mesh_faults, ALL),
-    Rule(films.rough_faults, ALL),
-    Rule(films.rough_tilt_faults, KINEMATIC),
-    Rule(films.rough_coupling_faults, (RUN,)),
-    Rule(films.rough_heat_faults, (*KINEMATIC, *EVERY_CYCLE)),
-    Rule(films.saturation_faults, ALL),
-    Rule(films.sound_faults, ALL),
-    Rule(films.moved_gas_faults, (RUN, *EVERY_CYCLE), moving=True),
-    Rule(films.enclosed_faults, KINEMATIC),
-    *(Rule(partial(kinematic.motion_faults, test=test), (test,)) for test in KINEMATIC),
-    Rule(kinematic.no_film_faults, KINEMATIC),
-    Rule(_without_film("a bearing sheet describes films; ball bearings have `ball_bearing_sheet`"), SHEETS),
-    Rule(_without_film("a comparison is one of models of films"), (COMPARISON,)),
-    Rule(_without_film("the ladder compares theories and meshes of films"), (LADDER,)),
-    Rule(linear_faults, EVERY_CYCLE),
-    *(Rule(partial(kinematic.turning_faults, test=test), (test,)) for test in KINEMATIC),
-    Rule(kinematic.theory_faults, KINEMATIC),
-    *(Rule(partial(kinematic.tilt_faults, test=test), (test,)) for test in KINEMATIC),
-    Rule(kinematic.misalignment_faults, tuple(each for each in ALL if each not in (*KINEMATIC, *AT_REST, *RUNS))),
-    Rule(lambda case: () if form_of(case).inclines else kinematic.misalignment_faults(case), (*AT_REST, *RUNS)),
-    Rule(static.tilted_sheet_faults, SHEETS),
-    Rule(_of_films(films.theory_faults), (RUN, *KINEMATIC)),
-    Rule(_of_films(films.form_faults), (RUN,)),
-    Rule(_of_films(films.changing_supply_faults), (RUN,)),
-    Rule(static.sheet_faults, SHEETS),
-    Rule(films.sheet_faults, SHEETS),
-    Rule(films.loaded_faults, (LOADED,)),
-    Rule(static.loaded_heat_faults, (LOADED,)),
-    Rule(static.chart_heat_faults, (CHART,)),
-    Rule(static.missing_heat_faults, (HEAT,)),
-    Rule(static.held_ring_faults, (BEARING, LOADED, STABILITY)),
-    Rule(static.held_film_faults, (BEARING, LOADED, STABILITY)),
-    Rule(static.held_cycle_faults, EVERY_CYCLE),
-    Rule(static.pin_cycle_faults, EVERY_CYCLE),
-    Rule(static.port_coupling_faults, (RUN,)),
-    Rule(films.rest_faults, (BEARING, STABILITY, *EVERY_CYCLE)),
-    Rule(films.linear_faults, (STABILITY, *EVERY_CYCLE)),
-    Rule(static.coefficient_faults, (STABILITY,)),
-    Rule(static.range_faults, (RANGE,)),
-    Rule(given_coefficient_faults, (SPEED_CYCLES, WHIRLS)),
-    Rule(cartridge_faults, EVERY_CYCLE),
-    Rule(lambda case: speed_dependent(case, CONSTANT), (CYCLES,)),
-    Rule(cycle_heat_faults, (SPEED_CYCLES, WHIRLS)),
-    Rule(other_cycle_heat_faults, (CYCLES,)),
-    Rule(stray_load_faults, EVERY_CYCLE),
-    Rule(smooth_faults, (CYCLES,)),
-    Rule(speed_cycle_faults, (SPEED_CYCLES, WHIRLS)),
-    Rule(unbalance_faults, (WHIRLS,)),
-    Rule(speed_range_faults, EVERY_CYCLE, last=True),
-    Rule(films.kept_film_faults, (RUN,), moving=True),
-    Rule(films.axial_heat_faults, (RUN,), moving=True),
-    Rule(films.axial_faults, (RUN, *EVERY_CYCLE), moving=True, last=True),
-    Rule(films.drive_faults, (RUN,)),
-    Rule(films.given_speed_faults, (*KINEMATIC, *EVERY_CYCLE, LADDER)),
-    Rule(films.number_faults, (RUN,), last=True),
-    Rule(films.speed_faults, (RUN,), last=True),
-    *(Rule(partial(kinematic.end_faults, test=test), (test,), last=True) for test in KINEMATIC),
-)
-
-
-def faults(case: Case, analysis: str = FILMS) -> list[Fault]:
-    """Every reason why an analysis of a case is refused. Raises InputError if this process does not have the bearing
-    model of the case."""
-    if alone := without_bearing(case):  # no other rule has a subject
-        return alone
-    reasons: list[Fault] = []
-    whole = case
-    if analysis in KINEMATIC:
-        reasons += choice_faults(case, analysis)
-        case = tested_case(case)
-    for rule in sorted((*RULES, *form_of(case).rules, *coupling_of(case).rules), key=lambda rule: rule.last):
-        asked = RUN if analysis == STILL and not rule.moving else analysis
-        if asked in rule.analyses and not (rule.last and reasons):
-            reasons += (replace(fault, key=key_in(whole, fault.key)) for fault in rule.of(case))
-    return list(dict.fromkeys(reasons))  # both ends of a cartridge have the same
-
-
-def require(case: Case, analysis: str = FILMS, more: Faults = ()) -> None:
-    """Raises InputError with every reason why an analysis of a case is refused; more: found by its caller."""
-    if reasons := [*more, *faults(case, analysis)]:
-        raise InputError(case.name or "case", tuple(reasons))

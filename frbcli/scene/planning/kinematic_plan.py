@@ -16,9 +16,9 @@ from frbcli.film.gap import Section, ends_at_ambient, whole_width
 from frbcli.scene.films import film_rectangle, film_section, least_gaps, make_law, places_of, slope_of, tilt_of, tilts
 from frbcli.scene.forms.form import MODAL, SHORT, FilmForm
 from frbcli.scene.forms.tilted import CELLS
+from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.kinematic import tested_case
 from frbcli.scene.gate.rule import KINEMATIC, ROTATION, motion_omega
-from frbcli.scene.gate.static import require
 from frbcli.scene.planning.cell_choice import given_cells
 from frbcli.scene.planning.film_choice import Decision
 from frbcli.scene.supply import unfed_films

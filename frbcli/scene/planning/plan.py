@@ -33,8 +33,8 @@ from frbcli.scene.cost import ExpectedCost, clock, expected_cost, memory_B
 from frbcli.scene.coupling import FULL, coupling_named, plan_coupling
 from frbcli.scene.course import ERROR_ORDERS, reference_length, resolution_decisions
 from frbcli.scene.films import coupled, film_places, opens_to_groove, resistance, rings, turning_rings, turns_with_oil
+from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import RUN
-from frbcli.scene.gate.static import require
 from frbcli.scene.machine.rotor import element_decisions
 from frbcli.scene.machine.turbocharger import shaft_of
 from frbcli.scene.planning.cell_choice import KNEE, heavily_loaded, run_up_profile

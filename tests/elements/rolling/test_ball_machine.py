@@ -22,8 +22,8 @@ from frbcli.rotor.loads import speed_profile
 from frbcli.rotor.port import ANSWER
 from frbcli.rotor.port_function import evaluate, evaluate_along
 from frbcli.runs.run import runup
+from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import CYCLES, RUN
-from frbcli.scene.gate.static import faults
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 

@@ -17,8 +17,8 @@ from frbcli.film.cells.linearised import steady_force
 from frbcli.film.cells.loads import FilmLoads, loads
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.scene.films import film_places, volume_film
+from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import ROTATION, STILL
-from frbcli.scene.gate.static import require
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 

@@ -15,8 +15,8 @@ from frbcli.film.cells.loads import FilmLoads, loads
 from frbcli.film.cells.mesh.bores import bathed
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.scene.films import film_places, turns_with_oil, volume_film
+from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import ROTATION
-from frbcli.scene.gate.static import require
 
 MOTION = Motion((0.3, -0.5), (0.0, 0.0), 300.0)
 SUPPLY = 'bearing.supply={ kind = "axial-grooves", opening_angle = "20 deg", pressure = "1.5 bar" }'

@@ -22,8 +22,8 @@ from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution, fitted_gr
 from frbcli.film.cells.loads import force, oil_balance
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
+from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import BEARING, LADDER, RUN, SPEED_CYCLES, STABILITY, WHIRLS
-from frbcli.scene.gate.static import require
 
 NEVER = 1e12  # s
 SUPPLIES = ("circumferential-groove", "axial-groove")
