@@ -45,6 +45,7 @@ ANNOUNCED_s, LONG_s = 1.0, 5.0
 COMPUTING, READING, WRITING = "Computing.", "Reading.", "Writing."
 CLOCK_AFTER_s = 1.0  # without a change the time is shown
 LONGEST_LEFT_s = 1e9  # longest time that is shown
+MOST_STEPS = 1e6  # per revolution, likewise
 COMPILING_EVERY_s = 10.0  # between two lines of the compilation where there is no terminal
 # A little work of the kind that compiling is, and the CPU time in s that it took where compile_s was measured.
 PIECES, REPEATED, REFERENCE_s = 40, 10, 6.5e-3
@@ -226,7 +227,8 @@ def slowness() -> float:
 
 def progress_line(progress: Progress, unit: SpeedUnit = HERTZ) -> str:
     """One line of at most WIDTH columns: time, speed in a unit, eccentricity, steps per revolution, time left."""
-    per_turn = f"{progress.steps_per_revolution:.3g}" if math.isfinite(progress.steps_per_revolution) else "-"
+    known = progress.steps_per_revolution < MOST_STEPS  # a rotor that has hardly begun to turn has no such number
+    per_turn = f"{progress.steps_per_revolution:.3g}" if known else "-"
     whose = "its error: " if progress.for_error else ""
     eps = "" if math.isnan(progress.eccentricity) else f"eps {progress.eccentricity:5.3f}  "
     line = (

@@ -39,9 +39,9 @@ DASHES = ("-", (0, (5, 2)), (0, (5, 1, 1, 1)))  # of more points than there are 
 FEW = 10  # speeds of films: they are marked, as fewer than two are no line
 FILM_DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)))
 FILM_MARKS = ("o", "D", "^")
-APART = 0.04  # of the range of speeds: labels of critical speeds that are nearer stand below each other
+APART = 0.04  # of the range of speeds: numbers of critical speeds that are nearer stand above each other
 MARGIN = 1.02  # of the axis of the speeds over the highest one
-LABEL_LENGTH, LEVELS = 0.45, 2  # of the height of the axes
+LABEL_HEIGHT, LEVELS = 14, 4  # points between these numbers, and how many stand above each other
 
 
 def response_figure(motion: Response, tracks: Sequence[OrderTrack] = ()) -> Figure:
@@ -109,16 +109,15 @@ def draw_amplitude(axes: Axes, motion: Response) -> None:
             motion.speeds_Hz, size - error, size + error, color=_line_of(number)[0], alpha=BAND, linewidth=0.0
         )
     close = APART * float(np.ptp(motion.speeds_Hz))
-    for number, peak in enumerate(motion.critical_speeds):
-        label = None if number else "critical speed"
-        axes.axvline(peak.speed_Hz, color=GREY, linewidth=0.6, linestyle=(0, (4, 3)), label=label)
-        lower = sum(peak.speed_Hz - other.speed_Hz < close for other in motion.critical_speeds[:number])
+    for number, peak in enumerate(motion.critical_speeds, start=1):
+        above = sum(peak.speed_Hz - other.speed_Hz < close for other in motion.critical_speeds[: number - 1]) % LEVELS
         factor = "" if peak.amplification_factor is None else f", factor {peak.amplification_factor:.3g}"
-        top = 1.0 - LABEL_LENGTH * (lower % LEVELS)
-        at = motion.case.speed_unit.words(peak.speed_Hz)
-        axes.annotate(f"{at}, {peak.direction}{factor}", (peak.speed_Hz, top), (3, -3),
-                      xycoords=("data", "axes fraction"), textcoords="offset points", rotation=90, fontsize=7,
-                      ha="left", va="top", bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5}
+        words = f"{number}: {motion.case.speed_unit.words(peak.speed_Hz)}, {peak.direction}{factor}"
+        axes.axvline(peak.speed_Hz, color=GREY, linewidth=0.6, linestyle=(0, (4, 3)), label=words)
+        # at the bottom, since the curves are high there
+        axes.annotate(str(number), (peak.speed_Hz, 0.0), (0, 8 + LABEL_HEIGHT * above),
+                      xycoords=("data", "axes fraction"), textcoords="offset points", fontsize=7, ha="center",
+                      va="center", bbox={"boxstyle": "circle,pad=0.2", "facecolor": "white", "edgecolor": GREY}
                       )  # fmt: skip
     if set(motion.validity) != {SOUND}:
         _doubts(axes, motion, labelled=True)
