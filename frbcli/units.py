@@ -25,7 +25,7 @@ NUMBER = "1"
 KINEMATIC = "m^2/s"  # of a viscosity
 
 _SPEED_UNITS = {"Hz": 1.0, "kHz": 1e3, "rpm": 1 / 60, "1/min": 1 / 60, "krpm": 1e3 / 60, "rad/s": 1 / (2 * math.pi)}
-_PER_MINUTE = ("rpm", "1/min", "min^-1", "min-1", "r/min", "rev/min", "U/min", "cpm")  # one unit
+_PER_MINUTE = ("rpm", "RPM", "1/min", "min^-1", "min-1", "r/min", "rev/min", "U/min", "tr/min", "cpm")  # one unit
 _SPEED_SPELLINGS = dict.fromkeys(_PER_MINUTE, "rpm") | {"rev/s": "Hz", "rps": "Hz"}
 _ANGLE_UNITS = {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180, "°": math.pi / 180}
 _ANGULAR_RATE_UNITS = {f"{name}/s": one for name, one in _ANGLE_UNITS.items()}
@@ -60,7 +60,8 @@ _COMMON: dict[str, dict[str, float]] = {
     "W/(m*K)": {"W/(m*K)": 1.0, "W/(m K)": 1.0, "W/m/K": 1.0},
     TEMPERATURE_DIFFERENCE: {"K": 1.0},
 }
-_CELSIUS = {"degC": 273.15, "°C": 273.15}  # K
+_CELSIUS = dict.fromkeys(("degC", "°C", "C", "deg C", "° C"), 273.15)  # K; no temperature is in coulomb
+_FAHRENHEIT = ("F", "deg F", "° F")
 _COLD = 100.0  # K, below which nobody writes degC
 
 _TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*)", re.DOTALL)
@@ -70,7 +71,12 @@ _MOST_OF_A_GROUP = 3  # digits behind a mark of thousands
 _ABSOLUTE = re.compile(r"(\w+?)\s*(?:a|\(a\)|abs\.?|absolute)")
 _GAUGE = re.compile(r"(bar|mbar|psi|kPa|MPa|Pa)\s*(?:g|\(g\)|gauge|gage)", re.IGNORECASE)
 _ATMOSPHERE = 101325.0  # Pa
-_HYPHEN = re.compile(r"(?<=[A-Za-z])-(?=[A-Za-z])")  # of g-mm
+_HYPHEN = re.compile(r"(?<=[A-Za-z])[-.](?=[A-Za-z])")  # of g-mm and N.m
+_POWER = re.compile(r"(?<=[A-Za-zµ])(?=[2-4](?![0-9]))")  # of kg/m3
+# Products as they are written without a sign between their units, and units that the registry knows by other names.
+_JOINED = re.compile(r"\b([mkM]?N|m?Pa|k?g)(m|mm|cm|s)(?![A-Za-z])")
+_PER_KELVIN = re.compile(r"/(m|kg) ?K$")  # of W/mK, whose kelvin is below the line
+_NAMES = {"lbm": "lb", "kp": "kgf", "lpm": "l/min", "gpm": "gallon/min"}
 _PEAK_TO_PEAK = re.compile(r"(\S+)\s+(?:pp|p-p|pk-pk|pkpk)")
 LONGEST_UNIT = 100  # characters; longer ones are not searched
 LONGEST_SHOWN = 40  # characters of a unit in a fault
@@ -84,7 +90,7 @@ _NAME = re.compile(r"[A-Za-zµ°]+")
 _PREFIXES = frozenset(("y", "z", "f", "p", "n", "u", "µ", "c", "da", "k", "M", "G", "E", "Z", "Y"))
 _BEFORE_BLANK = re.compile(rf"(?<![A-Za-zµ°])({'|'.join(sorted(_PREFIXES))}|[mdhTP])\s+(?=[A-Za-z])")
 _ABBREVIATION = 4  # characters at most: an s behind it is no plural, but may be a second
-_SPELLING = str.maketrans({"²": "^2", "³": "^3", "·": "*", "⋅": "*", "μ": "µ"})
+_SPELLING = str.maketrans({"²": "^2", "³": "^3", "⁻": "^-", "¹": "1", "·": "*", "⋅": "*", "μ": "µ"})
 
 # What people read, by SI unit: (name, SI value of one, SI value from which it is used), smallest first.
 _DISPLAY: dict[str, tuple[tuple[str, float, float], ...]] = {
@@ -226,14 +232,18 @@ def _to_si(number: float, unit_text: str, unit: str, remedy: str) -> float:
         unit_text = _pressure_unit(number, unit_text)
     elif unit == "m" and (peaks := _PEAK_TO_PEAK.fullmatch(unit_text)):
         unit_text = peaks[1]
-    unit_text = _HYPHEN.sub("*", unit_text)
+    unit_text = _POWER.sub("^", _HYPHEN.sub("*", unit_text))
     if unit == "K" and unit_text in _CELSIUS:
         return _round(number + _CELSIUS[unit_text])
+    if unit == "K" and unit_text in _FAHRENHEIT:
+        unit_text = "degF"
     factor = _COMMON.get(unit, {}).get(unit_text)
     if factor is not None:
         return _round(number * factor)
     if len(unit_text) > LONGEST_UNIT:
         raise ValueFault(f'has a unit that cannot be read: "{_shown(unit_text)}".', remedy)
+    if unit_text != (apart := _apart(unit_text)) and _reads(number, apart, unit):
+        return _to_si(number, apart, unit, remedy)
     try:
         return _round(_by_pint(number, unit_text, unit, remedy))
     except ValueFault as fault:
@@ -241,6 +251,12 @@ def _to_si(number: float, unit_text: str, unit: str, remedy: str) -> float:
         if joined == unit_text or not _reads(number, joined, unit):
             raise
         raise ValueFault(fault.problem, f'Write "{number:.15g} {joined}": no blank after a prefix.') from None
+
+
+def _apart(unit_text: str) -> str:
+    """A unit with signs between the units that were joined: Nm is N*m, Ns/m is N*s/m."""
+    apart = _PER_KELVIN.sub(r"/(\1*K)", _JOINED.sub(r"\1*\2", unit_text))
+    return _NAME.sub(lambda name: _NAMES.get(name[0], name[0]), apart)
 
 
 def _reads(number: float, unit_text: str, unit: str) -> bool:
