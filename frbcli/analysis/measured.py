@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import cmath
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -26,7 +27,7 @@ from frbcli.results.measured.columns import Columns, is_interval, wrong_file
 from frbcli.results.measured.reading import read_columns
 from frbcli.results.records import LARGEST, SMALLEST, Signal, wrong_values
 from frbcli.results.store import Run
-from frbcli.units import SPEED, ValueFault, quantity
+from frbcli.units import SPEED, ValueFault, display, quantity
 
 BAND = 0.1  # of the slow speed, by which the speed may be off it
 LEAST_REVOLUTIONS = 3.0  # about that speed
@@ -38,6 +39,7 @@ MOST_NUMBERS = 8  # of a file, in a remedy
 EXAMPLES = {"--unit": '"125 um"', "--time-unit": '"1 ms"', "--speed-unit": '"1 rpm"'}
 SAME = 1e-6  # relative difference of two units that are one
 NAMES = {"--unit": "um", "--time-unit": "s", "--speed-unit": "Hz"}  # of the units in USUAL
+ANGULAR = re.compile(r"omega\w*|ω|Ω|w", re.IGNORECASE)  # names of a speed in rad/s, as equations have it
 SLOWEST = 1.0  # samples per second: a smaller number is an interval
 
 
@@ -87,7 +89,7 @@ class Measurement:
     y : str, optional
         Column of the other displacement; frb finds events only if both are given.
     time : str, optional
-        Column of the times.
+        Column of the times. Default: the only one that is called time, t, Zeit or the like.
     rate : float or str, optional
         Samples per second instead of `time`, or the name of a single number of the file, such as "fs".
     speed : str, optional
@@ -315,6 +317,9 @@ class _Units:
         if one is None and stated is not None and in_unit is None:
             problem = f'says that "{name}" is in {stated}, which is no unit of this kind.'
             raise wrong_file(path, problem, f"Say by {option} what 1 {stated} means, e.g. {EXAMPLES[option]}.")
+        if one is None and stated is None and unit == SPEED and ANGULAR.fullmatch(name):
+            problem = f'has no unit of "{name}", which is Hz or rad/s.'
+            raise wrong_file(path, problem, f'Give {option} "1 rad/s" or {option} "1 Hz".')
         if one is None:
             assumed = f"{NAMES[option]} (no unit in the file; {option} changes it)"
             self._used[name] = assumed if stated is None else stated
@@ -322,7 +327,7 @@ class _Units:
         if in_unit is not None and not math.isclose(in_unit, one, rel_tol=SAME):
             problem = f'says that "{name}" is in {stated}, but {option} is {one:g} {unit}.'
             raise wrong_file(path, problem, f'Give {option} "1 {stated}".')
-        self._used[name] = stated if in_unit is not None and stated else f"{one:g} {unit}"
+        self._used[name] = stated if in_unit is not None and stated else display(one, unit)
         return one
 
 
@@ -341,9 +346,10 @@ def _times(units: _Units, given: Measurement, count: int) -> Array:
     own = columns.own_times.get(columns.named(given.x))
     if own is not None:
         return require_rising(columns, "time", own)
-    if given.time is not None:
-        return require_rising(columns, given.time, units.column(given.time, given.time_unit_s, "s", "--time-unit"))
     rate = columns.rate if given.rate is None else given.rate
+    name = columns.time_name if given.time is None and rate is None else given.time
+    if name is not None:
+        return require_rising(columns, name, units.column(name, given.time_unit_s, "s", "--time-unit"))
     if rate is None:
         numbers = ", ".join(f"{name} = {value:g}" for name, value in list(columns.numbers.items())[:MOST_NUMBERS])
         or_number = f", or --rate NAME of one of its numbers: {numbers}." if numbers else "."

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import math
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -132,7 +134,7 @@ def test_a_measurement_of_one_direction_has_no_events_beside_a_run(
     ("changed", "said"),
     [
         ({"x": "z"}, "has no column"),
-        ({"time": None}, "--time"),
+        ({"time": None}, "--time"),  # and no column is called so
         ({"speed": None}, "--tacho"),
         ({"time": "n"}, "do not rise"),
         ({"speed": None, "tacho": "x"}, ""),
@@ -142,6 +144,7 @@ def test_what_is_missing_is_said(
     changed: dict[str, str | None], said: str, tmp_path: Path, table: pd.DataFrame
 ) -> None:
     path = tmp_path / "run.csv"
+    table = table.rename(columns={} if changed.get("time", "t") else {"t": "a"})
     table[::-1].to_csv(path, index=False) if changed.get("time") else table.to_csv(path, index=False)
     if not said:
         table.assign(x=1.0).to_csv(path, index=False)
@@ -287,3 +290,41 @@ def test_the_command_subtracts_the_slow_roll(tmp_path: Path, capsys: pytest.Capt
     assert frb(["waterfall", str(path), *columns, "--slow-roll", "4 Hz", "-o", str(tmp_path / "orders.png")]) == 0
     told = json.loads(capsys.readouterr().out)["orders"][0]
     assert 1e6 * told["amplitude_max_m"] == pytest.approx(np.abs(alone).max(), rel=5e-3)
+
+
+@pytest.mark.parametrize(
+    ("head", "x", "speed"),
+    [
+        ("t/s,x/mm,n in 1/min", "x/mm", "n in 1/min"),
+        ("Time [s],x in mm,n / (rev/min)", "x in mm", "n / (rev/min)"),
+        ("#,x,n\ns,mm,rpm", "x", "n"),  # a head of its own whose first column counts
+        ("Zeit (s),x (mm),n (U/min)", "x (mm)", "n (U/min)"),
+        ("x-axis,x,n\nsecond,mm,rpm", "x", "n"),
+    ],
+)
+def test_units_in_names_and_the_only_times_are_used(head: str, x: str, speed: str, tmp_path: Path) -> None:
+    """1 mm at 1200 rpm, 1 kHz; the times are in the only column that can have them."""
+    time = np.arange(2000) / 1e3
+    rows = [f"{t:.3f},{math.cos(40.0 * math.pi * t):.9f},1200" for t in time]
+    (path := tmp_path / "a.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
+    run = measured_run(path, Measurement(x, 35e-6, speed=speed, **({"time": "#"} if head.startswith("#") else {})))
+    assert run["speed_Hz"] == pytest.approx(20.0, rel=1e-12)
+    assert run["time_s"] == pytest.approx(time, abs=1e-12)
+    assert np.max(run["journal_x_m"]) == pytest.approx(1e-3, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("head", "row", "said"),
+    [
+        ("t,x,omega", "{t:.3f},{x:.6f},125", "Hz or rad/s"),
+        ("t/s,x in mm/s,n", "{t:.3f},{x:.6f},20", "no displacement"),
+        ("t;x;n", "{t:.3f};{x:.6f};1,200.0", "marks between thousands"),
+        ("t;x;n", "{t:.3f};{x:.6f};1'200", "marks between thousands"),
+    ],
+)
+def test_what_a_column_may_mean_is_not_guessed(head: str, row: str, said: str, tmp_path: Path) -> None:
+    rows = [row.format(t=t / 1e3, x=math.cos(0.1 * t)) for t in range(2000)]
+    (path := tmp_path / "a.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
+    x, speed = re.split("[,;]", head)[1:]
+    with pytest.raises(InputError, match=said):
+        measured_run(path, Measurement(x, 35e-6, speed=speed, unit_m=None))

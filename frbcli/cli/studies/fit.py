@@ -61,7 +61,7 @@ def measured_options(function: Function) -> Function:
     named: dict[str, tuple[dict[str, Any], str]] = {
         "x": ({"metavar": "COLUMN"}, "Column of the displacement in x of a measurement; of WAV the channel, from 1."),
         "y": ({"metavar": "COLUMN"}, "Column of the displacement in y; without it there are no events."),
-        "time": ({"metavar": "COLUMN"}, "Column of the times."),
+        "time": ({"metavar": "COLUMN"}, "Column of the times; by default the one called so."),
         "rate": ({"type": Rate()}, "Samples per second, without a column of times; or a number of the file, as fs."),
         "speed-column": ({"metavar": "COLUMN"}, "Column of the rotor speed."),
         "speed-time": ({"metavar": "COLUMN"}, "Column of the times of the rotor speed, where it has its own."),

@@ -6,17 +6,14 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.errors import FEW, InputError, did_you_mean, input_error, nearest, printable
+from frbcli.results.measured.delimited import UNITS, without_unit
 from frbcli.results.records import LARGEST
-
-if TYPE_CHECKING:
-    pass
-from frbcli.results.measured.delimited import without_unit
 
 LARGEST_FILE = 1024**3  # bytes
 
@@ -26,8 +23,11 @@ _LONG = "ms|us|µs|sec|Hz|hz|kHz|rpm|RPM|krpm|rad/s|mm|um|µm|nm|cm|mil|mils|mic
 
 
 SUFFIX = re.compile(rf".+(?:_(?:in_)?({_LONG}|s|m)|\s({_LONG}))")
+WRITTEN_OUT = re.compile(r"(.+?)(?:\s+in\s+|\s*/\s*)\(?([^()\s]+)\)?")  # n in 1/min, t/s, v/(mm/s)
 
 
+TIME_NAME = re.compile(r"(?:time|timestamp|zeit|temps|t)(?:_?(?:s|sec|ms|us|µs))?", re.IGNORECASE)
+TIME_UNITS = ("s", "sec", "second", "seconds", "ms", "us", "µs")
 ITSELF = re.compile(r"rpm|RPM|Hz|U/min|1/min|min-1|r/min|rev/min|cpm|krpm|[Ss]econds?")  # names that are a unit
 
 
@@ -86,6 +86,14 @@ class Columns:
         meant = did_you_mean(name, self.values) + " " if nearest(name, self.values) else ""
         raise wrong_file(self.path, f'has no column "{name}".', meant + self._known())
 
+    @property
+    def time_name(self) -> str | None:
+        """The only column whose name, or unit, says that it holds times, None if there is none or several."""
+        words = {name: name.removesuffix(f"/{unit_in(name)}") for name in self.values}
+        names = [name for name, word in words.items() if TIME_NAME.fullmatch(without_unit(word).strip())]
+        names = names or [name for name in self.values if (self._unit(name) or "").lower() in TIME_UNITS]
+        return names[0] if len(names) == 1 else None
+
     def unit(self, name: str) -> str | None:
         """The unit of a column, None where the file does not state it."""
         return self._unit(self.named(name))
@@ -122,8 +130,11 @@ def unit_in(name: str) -> str | None:
     plain = without_unit(name).strip()
     if ITSELF.fullmatch(plain):
         return plain
-    match = SUFFIX.fullmatch(plain)
-    return None if match is None else match.group(1) or match.group(2)
+    if match := SUFFIX.fullmatch(plain):
+        return match.group(1) or match.group(2)
+    written = WRITTEN_OUT.fullmatch(plain)
+    known = written is not None and written[2].lower() in UNITS and plain.lower() not in UNITS
+    return written[2] if known and written is not None else None
 
 
 def is_interval(name: str) -> bool:

@@ -31,6 +31,7 @@ STAMP = re.compile(_PARTS)
 DATES = ("%Y-%m-%d", "%Y/%m/%d", "%d.%m.%Y", "%m/%d/%Y", "%d/%m/%Y")
 DAY_s, HALF_DAY_s = 86400.0, 43200.0
 COMMENT = "#"
+NUMBERED = re.compile(r"\s*#\s*[,;\t]")  # a line of names whose first column counts the rows
 DELIMITERS = ("\t", ";", ",", " ")  # a comma after the others, for it may be a decimal one; any number of blanks
 MOST_COLUMNS = 1000
 LOOKED_AT = 1000  # lines from which delimiter and decimal mark are found
@@ -178,12 +179,12 @@ class _Head:
 def read_table(content: bytes) -> DelimitedTable:
     """The table in a file of text. Raises ValueError if there is none, or its rows are ragged."""
     lines = list(_lines(content))
-    numbered = [(number, line) for number, line in lines if not line.lstrip().startswith(COMMENT)]
+    numbered = [(number, line) for number, line in lines if not _is_comment(line)]
     if not numbered:
         raise ValueError("it is empty")
     ending = [line for _, line in numbered[len(numbered) // 2 :]]  # which holds few lines from above the rows
     layout = _layout(ending[:: max(1, len(ending) // LOOKED_AT)], numbered[-2:][0][1])
-    comments = [line.lstrip().lstrip(COMMENT) for number, line in lines if line.lstrip().startswith(COMMENT)]
+    comments = [line.lstrip().lstrip(COMMENT) for _, line in lines if _is_comment(line)]
     head = _head([layout.split(line) for _, line in numbered], layout, comments)
     line_numbers, rows = zip(*_even_rows(numbered[head.begin :], layout.delimiter, len(head.names)), strict=True)
     import pandas as pd
@@ -193,6 +194,10 @@ def read_table(content: bytes) -> DelimitedTable:
         decimal=layout.mark, names=range(len(head.names)), skipinitialspace=True, low_memory=False,
     )  # fmt: skip
     return DelimitedTable(head.names, head.units, values, line_numbers, head.numbers, layout.mark)
+
+
+def _is_comment(line: str) -> bool:
+    return line.lstrip().startswith(COMMENT) and not NUMBERED.match(line)
 
 
 def fields(line: str, delimiter: str) -> list[str]:

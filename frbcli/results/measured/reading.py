@@ -27,6 +27,7 @@ from frbcli.results.write import Unreadable, require_file
 Numbers = NDArray[Any]
 Leaf = tuple[str, "Numbers | str"]  # name and values in MATLAB's shape, or what they are where they are no numbers
 
+GROUPED = r"[+-]?\d{1,3}(?:[,' ]\d{3})+(?:\.\d*)?|[+-]?\d{1,3}(?:\.\d{3})+,\d*"  # 1,200.5 or 1.200,5
 DEEPEST = 8  # structs within structs
 MOST_VARIABLES = 10_000
 OBJECT = "is an object of MATLAB, such as a table: save its columns as vectors, e.g. x = T.x"
@@ -248,6 +249,9 @@ def _csv(path: Path) -> Columns:
         seen[name] += 1
         one = f"{name}.{seen[name]}" if named[name] > 1 else name
         column, stamped = _numbers(table, place)
+        if grouped := _grouped(table.values[place]):
+            doubtful[one] = f'has marks between thousands, as in "{grouped}"'
+            continue
         if np.all(np.isnan(column)) and (name == str(place + 1) or name in table.numbers):
             continue
         values[one] = column
@@ -256,6 +260,15 @@ def _csv(path: Path) -> Columns:
     rates = {1.0 / value for name, value in table.numbers.items() if is_interval(name) and value > 0.0}
     rate = rates.pop() if len(rates) == 1 else None
     return Columns(path, values, rate, units, table.lines, doubtful, table.numbers)
+
+
+def _grouped(column: Any) -> str | None:
+    """The first number of a column of text that has marks between its thousands, which would count as a gap."""
+    if column.dtype.kind in "biuf":
+        return None
+    words = column.astype(str).str.strip()
+    grouped = words[words.str.fullmatch(GROUPED)]
+    return None if grouped.empty else printable(str(grouped.iloc[0]))
 
 
 def _numbers(table: DelimitedTable, place: int) -> tuple[Array, bool]:
