@@ -6,6 +6,8 @@ Heat in a case: the model, and what shaft and housing are to the films.
 from __future__ import annotations
 
 import math
+import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
@@ -46,6 +48,23 @@ USUAL_DENSITY = 850.0
 THIRD = 5.0 / 6.0  # of the distance of two temperatures: from 40 and 100 degC on to 150 degC
 
 GradeName: Any = Literal[tuple(OILS)]
+
+
+def _plain(name: str) -> str:
+    """A grade without what its spellings differ in: "VG32" and "ISO VG 32" are one."""
+    return re.sub(r"[\s-]", "", name).upper().removeprefix("ISO")
+
+
+SPELLED = {_plain(name): name for name in OILS}
+
+
+def with_grade(oil: Mapping[str, Any]) -> dict[str, Any]:
+    """The table [oil] with the grade of its viscosity, by itself or in a table, by the name that the library has."""
+    given = oil.get("viscosity")
+    name = given.get("grade") if isinstance(given, dict) else given
+    if not isinstance(name, str) or not _plain(name).startswith(("VG", "SAE")):
+        return dict(oil)
+    return {**oil, "viscosity": {"grade": SPELLED.get(_plain(name), name)}}
 
 
 @dataclass(frozen=True)
@@ -150,11 +169,12 @@ class Oil(Model):
     @classmethod
     def _density_of_its_grade(cls, data: object) -> object:
         """`data` with the density of its grade, where it gives none."""
-        if not isinstance(data, dict) or "density" in data:
+        if not isinstance(data, dict):
             return data
+        data = with_grade(data)
         given = data.get("viscosity")
         name = given.get("grade") if isinstance(given, dict) else getattr(given, "grade", None)
-        if not isinstance(name, str) or name not in OILS:
+        if "density" in data or not isinstance(name, str) or name not in OILS:
             return data
         return {**data, "density": density(OILS[name].density_15, _readable(data.get("temperature")))}
 

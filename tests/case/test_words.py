@@ -37,12 +37,28 @@ def test_two_points_of_a_data_sheet_follow_walther() -> None:
         assert case.oil.viscosity == pytest.approx(850.0 * kinematic, rel=within)
 
 
+@pytest.mark.parametrize("written", ["VG46", "iso vg 46", "ISO-VG-46", "{ grade = 'VG46' }"])
+def test_a_grade_is_known_by_its_spellings(written: str) -> None:
+    grades = [load_case("jeffcott", [f"oil.viscosity={name}", "oil.temperature=60 degC"])
+              for name in (written, '{ grade = "ISO VG 46" }')]  # fmt: skip
+    assert grades[0].oil == grades[1].oil
+
+
 @pytest.mark.parametrize(
     ("setting", "said"),
     [
         ("bearing.diametral_clearance=70 um", "write clearance, half of the diametral one: 35 um."),
         ("bearing.radial_clearance=35 um", "Clearances are radial: write clearance."),
         ("bearing.length=20 mm", "Write width."),
+        ("bearing.radius=12.5 mm", "Write diameter: 25 mm."),
+        ("bearing.kind=plain", 'Write kind = "single-film".'),
+        ("bearing.kind=deep-groove", 'Write kind = "ball".'),
+        ("film.cavitation=JFO", 'Write "elrod"'),
+        ("film.cavitation=Gumbel", 'Write "half-sommerfeld"'),
+        ("speed.max=9000 rpm", "Write to."),
+        ("rotor.eccentricity=1 um", "Write unbalance"),
+        ("oil.grade=VG 32", 'Write viscosity = "ISO VG 32"'),
+        ("oil.viscosity=VG 46", "temperature"),
         ("bearing.clearance=0,035 mm", 'has a decimal comma. Write "0.035 mm".'),
         ("bearing.supply.pressure=3 barg", 'is a gauge pressure; pressures are absolute here. Write "4.01 bar"'),
         ("bearing.kind=semi-floating", '"floating-ring" with [bearing.pin]'),

@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from frbcli.case.files.coefficient_files import with_coefficient_files
 from frbcli.case.model import Model
+from frbcli.case.oil import with_grade
 from frbcli.case.over_time import machine_breaches
 from frbcli.case.reading.coefficient_files import with_housing_file
 from frbcli.case.reading.ross import with_rotor_file
@@ -271,6 +272,8 @@ def _apply(data: dict[str, Any], settings: Iterable[_Set]) -> tuple[dict[str, An
 
 def _validate(data: dict[str, Any]) -> tuple[Case | None, list[Breach]]:
     """The case in `data`, None if the models reject it, and all faults."""
+    if isinstance(oil := data.get("oil"), dict):
+        data = {**data, "oil": with_grade(oil)}
     case, guess = None, data
     guessed: list[KeyPath] = []
     faults: dict[KeyPath, Breach] = {}  # one per key: the first says why the value cannot be taken at all

@@ -38,8 +38,30 @@ KINDS_ELSEWHERE = {
         ("pad", "foil", "roller", "needle", "magnet"),
         'It is not modelled: kind = "coefficients" takes its stiffness and damping.',
     ),
+    **dict.fromkeys(("plain", "journal", "hydrodynamic", "sleeve", "lemon"), 'Write kind = "single-film".'),
+    **dict.fromkeys(("contact", "rolling", "deep"), 'Write kind = "ball".'),
+    **dict.fromkeys(("spring", "linear", "rigid"), 'Write kind = "coefficients", with stiffness and damping.'),
 }  # fmt: skip
+LAWS_ELSEWHERE = {
+    **dict.fromkeys(("gumbel", "gümbel", "gumbel-sommerfeld"), 'Write "half-sommerfeld".'),
+    **dict.fromkeys(("jfo", "jakobsson-floberg-olsson", "jakobsson-floberg"), 'Write "elrod", which is this model.'),
+    **dict.fromkeys(("swift-stieber", "christopherson"), 'Write "reynolds".'),
+    **dict.fromkeys(("full-sommerfeld", "none", "2pi"), 'Write "sommerfeld".'),
+    **dict.fromkeys(("pi-film", "pi"), 'Write "half-sommerfeld".'),
+}
 KEYS_ELSEWHERE = {
+    "radius": "Write diameter{twice}.",
+    "L_D": "Write width and diameter.",
+    "type": "Write kind.",
+    "grade": 'Write viscosity = "ISO VG 32", and temperature.',
+    "vg": 'Write viscosity = "ISO VG 32", and temperature.',
+    "eccentricity": "Write unbalance, the mass times this eccentricity.",
+    "max": "Write to.",
+    "min": "Write from.",
+    "start": "Write from.",
+    "end": "Write to.",
+    "ramp": "Write duration, the difference of the speeds over this rate.",
+    "acceleration": "Write duration, the difference of the speeds over this rate.",
     "diametral_clearance": "Clearances are radial: write clearance, half of the diametral one{half}.",
     "diametrical_clearance": "Clearances are radial: write clearance, half of the diametral one{half}.",
     "radial_clearance": "Clearances are radial: write clearance.",
@@ -128,8 +150,11 @@ def _breach(path: Path, loc: Sequence[str | int], kind: str, context: dict[str, 
         elsewhere = next((words for part, words in known.items() if part in tag.lower()), "")
         return Breach((*path, "kind"), problem, elsewhere or _one_of(tag, _kinds(loc)))
     if kind == "literal_error":
-        remedy = _one_of(str(context["input"]), _choices(_place(loc).field))
-        if path == CAVITATION:
+        given = str(context["input"])
+        remedy = _one_of(given, _choices(_place(loc).field))
+        if path[-1] == CAVITATION[-1] and given.lower() in LAWS_ELSEWHERE:
+            remedy = LAWS_ELSEWHERE[given.lower()]
+        elif path == CAVITATION:
             remedy += " A law of your own is added in this process before the case is read: frbcli.add_law."
         return Breach(path, UNKNOWN, remedy)
     field = _place(loc).field
@@ -203,14 +228,14 @@ def _how_to_add(path: Path, field: FieldInfo | None) -> str:
 def _nearest(key: str, models: Sequence[type[Model]], value: object) -> str:
     known = [name for model in models for name in _fields(model)]
     if key in KEYS_ELSEWHERE and key not in known:
-        return KEYS_ELSEWHERE[key].format(half=_half(value))
+        return KEYS_ELSEWHERE[key].format(half=_times(0.5, value), twice=_times(2.0, value))
     return did_you_mean(key, known, f"Known are: {', '.join(known)}.")
 
 
-def _half(value: object) -> str:
-    """Half of a length in words, nothing if it cannot be read."""
+def _times(factor: float, value: object) -> str:
+    """A length times a factor in words, nothing if it cannot be read."""
     try:
-        return f": {display(0.5 * quantity(value, 'm'), 'm')}"
+        return f": {display(factor * quantity(value, 'm'), 'm')}"
     except ValueFault:
         return ""
 
