@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,12 @@ from frbcli.case.reading.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.cycles.columns import CyclePoint, LimitCycles
 from frbcli.cycles.limit_cycles import limit_cycles
-from frbcli.errors import InputError
+from frbcli.cycles.shooting.period_map import period_map
+from frbcli.cycles.shooting.rest import settled
+from frbcli.cycles.shooting.shots import Shooting
+from frbcli.linear.stability import stability
+from frbcli.scene.gate.gate import faults
+from frbcli.scene.gate.rule import CYCLES, SPEED_CYCLES, WHIRLS
 
 MACHINE = """
 [rotor]
@@ -40,6 +47,7 @@ from = "170 Hz"
 to = "200 Hz"
 duration = "1 s"
 """
+CELLS = "film.cavitation=reynolds", "film.theory=auto", "film.solution=cells", "accuracy.mesh=[2, 24]"
 LOW, HIGH = (2e5, 5e4, 20.0), (8e5, 2e5, 60.0)  # at 160 and 200 Hz: direct and cross-coupled N/m, N s/m
 
 
@@ -88,6 +96,29 @@ def test_a_cycle_is_that_of_the_machine_with_the_coefficients_of_its_speed() -> 
     assert np.isfinite(hopf.lyapunov)
 
 
-def test_films_on_cells_have_cycles_with_constant_coefficients_only() -> None:
-    with pytest.raises(InputError, match="constant coefficients"):
-        limit_cycles(case(tables((160.0, LOW), (200.0, HIGH)), "film.cavitation=reynolds", "film.theory=auto"))
+def test_the_map_over_a_period_has_the_coefficients_of_its_speed() -> None:
+    """As of a machine with these coefficients, and of one with another speed's as a check; with a damping that turns,
+    c dx/dt + c omega x across it. Of films on cells, too, to what differences on cells leave."""
+    omega = 2.0 * math.pi * 194.0
+    turning = "rotor.internal_damping=100 N*s/m"
+    table, alone = tables((160.0, LOW), (200.0, HIGH)), constant(*at(194.0))
+    for settings, close in (((), 1e-7), (CELLS, 5e-4)):
+        eigenvalues = [
+            settled(Shooting(period_map(case(seal, *settings, *more)), omega), omega).eigenvalues[0]  # type: ignore[union-attr]
+            for seal, more in ((table, ()), (alone, ()), (constant(*at(190.0)), ()), (alone, (turning,)))
+        ]
+        assert eigenvalues[0] == pytest.approx(eigenvalues[1], rel=close)
+        assert abs(eigenvalues[2] - eigenvalues[1]) > 1e-3 * omega
+        assert eigenvalues[3].real > eigenvalues[1].real  # above the natural frequency it drives
+    linear = stability(case(alone, turning), [194.0]).points[0].eigenvalues
+    own = settled(Shooting(period_map(case(alone, turning)), omega), omega)
+    assert own is not None
+    assert min(abs(linear - own.eigenvalues[0])) < 1e-6 * omega
+
+
+def test_films_on_cells_have_cycles_beside_what_depends_on_the_speed() -> None:
+    settings = *CELLS, "rotor.internal_damping=100 N*s/m", "rotor.unbalance=3 g*mm"
+    machine = case(tables((160.0, LOW), (200.0, HIGH)), *settings)
+    assert faults(machine, SPEED_CYCLES) == []
+    assert faults(machine, WHIRLS) == []
+    assert "constant coefficients" in faults(machine, CYCLES)[0].problem
