@@ -132,10 +132,13 @@ def call(options: list[Option], there: list[str], chance: random.Random) -> list
 
 
 def may_change(name: str, before: bytes, after: bytes, words: list[str]) -> bool:
-    """Whether a file was an earlier result, whose place a whole one of its kind has taken."""
+    """Whether a file was an earlier result, whose place a whole one of its kind has taken, or by --force any file that
+    the command does not read."""
     kinds = {**PICTURES, ".html": PAGE, ".csv": TABLES["csv"]}
     if RUN_KIND.head.match(before):
         return words[0] in ("runup", "rundown") and "--force" in words and RUN_KIND.head.match(after) is not None
+    if "--force" in words and name != CASE:
+        return any(kind.head.match(after) for kind in kinds.values())
     kind = next((kind for kind in kinds.values() if kind.head.match(before)), None)
     own = OWN in before or before == OLD["old.csv"]
     return len(before) == 0 or (name != CASE and own and kind is not None and kind.head.match(after) is not None)
