@@ -193,6 +193,7 @@ def test_a_line_runs(
         ("engine.h5", "engine.h5", "turbocharger-engine", ()),
         ("axial", "run.h5", "turbocharger-car-thrust", ()),
         ("pin", "run.h5", "floating-ring", ('bearing.pin={radius="16 mm", play="0.1 mm", stiffness="1e6 N/m"}',)),
+        ("supply-pressure", "run.h5", "jeffcott", ('bearing.supply.pressure=[["0 s", "1 bar"], ["1 s", "2 bar"]]',)),
         ("film", "onset.h5", "turbocharger-low-supply", ('output.films={ from="5 ms", to="0.2 s" }', "speed.to=60 Hz")),
     ):
         if word in words and words[0] != "runup":
