@@ -38,7 +38,7 @@ YOUNG = 300_000
 LONGEST = (
     "test_heat_run", "test_command_line", "test_oil_cycles", "test_limit_cycles", "test_given_flow_run", "test_streams",
     "test_resumed_machines", "test_published_run", "test_inputs", "test_coefficients_alone", "test_work_lost",
-    "test_interruptions", "test_two_frequencies", "test_pressed_contact", "test_cosimulation",
+    "test_interruptions", "test_pressed_contact", "test_cosimulation",
     "test_bearing_sheet",
 )  # fmt: skip
 

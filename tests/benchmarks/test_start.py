@@ -16,7 +16,7 @@ pytestmark = [pytest.mark.nightly, pytest.mark.timing]
 
 LIBRARIES, CLICK = "import numpy, numba, h5py", "import click"
 RUN = ("runup", "jeffcott", "--force", "-o", "x.h5")
-PAIRS = 9
+PAIRS = 5
 ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
 
 

@@ -183,17 +183,6 @@ def test_whirls_at_a_given_flow_grow_as_the_linearised_film_says() -> None:
     assert abs(rate.imag) == pytest.approx(283.11, rel=1e-4)
 
 
-@pytest.mark.nightly
-def test_the_cycle_of_a_floating_ring_is_what_the_time_loop_ends_in() -> None:
-    """Two films and a ring whose speed follows slowly, 64 x 5 cells, at 66 Hz, before the fold of the branch: after
-    300 periods. The cycle is a mean over places of the cells, whose round-off moves its frequency: by 2e-5 between two
-    forms of the same law; the frequencies of the time loop differed by 3e-6."""
-    settings = ['bearing.inner.supply={kind="circumferential-groove",pressure="2 bar"}', "film.cavitation=two-phase"]
-    settings += ["speed.from=61 Hz", "speed.to=66.3 Hz", "accuracy.mesh=[5,64]"]
-    found = frbcli.limit_cycles(frbcli.load_case("floating-ring", settings), [66.0])
-    check_time_loop_ends_in_the_cycle(found, 450, 2e-4, 3e-5)
-
-
 GAS = ("rotor.mass=30 kg", "film.cavitation=bubbly", "accuracy.mesh=[4,24]")
 AT_170_Hz = 2.0 * math.pi * 170.0
 

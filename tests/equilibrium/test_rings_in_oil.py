@@ -150,31 +150,27 @@ def test_missing_oil_lets_a_ring_turn_as_in_the_time_loop(factor: str) -> None:
     assert 1.01 < position.ring_speeds[0] / full.ring_speeds[0] < 1.06
 
 
-@pytest.mark.nightly  # half a minute
+@pytest.mark.nightly  # a quarter of a minute
 @pytest.mark.parametrize("factor", ["global", "local"])
 def test_a_ring_rests_as_it_turns_in_the_time_loop(factor: str) -> None:
-    """On the same cells; with full films it would turn with 0.1723 of the speed of the rotor."""
+    """On the same cells; with full films it would turn with 0.1723 of the speed of the rotor. Its speed settles with
+    15 1/s: a ratio that is wrong by 1 % is off by 0.9 % after the run."""
     case = ring_case("2 bar", "two-phase", "accuracy.mesh=[6,48]", f"film.cavitation_factor={factor}")
     system = make_system(case, make_plan(case))
-    rest, profile = resting_position(system, OMEGA), speed_profile((0.0, 0.3), (OMEGA, OMEGA))
+    rest, profile = resting_position(system, OMEGA), speed_profile((0.0, 0.15), (OMEGA, OMEGA))
     control = Control(1e-7, 24.0, 0.01, 0.01, 0.9999, 0.0)
     after = march(system, profile, control, start(system, profile, rest.displacements, rest.velocities(system)))
     assert after.v[-1, -1] == pytest.approx(rest.ring_speeds[0], rel=4e-3)
     assert rest.ring_speeds[0] / OMEGA > 0.175
 
 
-@pytest.mark.nightly  # a minute and a half each
-@pytest.mark.parametrize("machine", ["ring", "tilting shaft in bubbly oil"])
-def test_whirls_grow_as_in_the_time_loop(machine: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of two runs from beside rest, on either side: how what lies between them goes on, by its singular vectors. On
-    twice as coarse cells the growth of the ring is 14.3, on these 13.7 1/s."""
+@pytest.mark.nightly  # a minute and a half; of rings by shooting: test_every_slow_motion_decays_as_by_shooting
+def test_whirls_in_bubbly_oil_grow_as_in_the_time_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of two runs from beside rest, on either side: how what lies between them goes on, by its singular vectors."""
     monkeypatch.undo()  # on all cells of stability
-    case, speed, time = {
-        "ring": (ring_case("2 bar", "two-phase", "accuracy.mesh=[12,96]"), 90.0, 0.15),
-        "tilting shaft in bubbly oil": (tilting_shaft("bubbly"), 300.0, 0.015),
-    }[machine]
-    (point,) = stability_points(case, [speed])[1]
-    seen = seen_in_the_loop(case, 2.0 * math.pi * speed, time)
+    case = tilting_shaft("bubbly")
+    (point,) = stability_points(case, [300.0])[1]
+    seen = seen_in_the_loop(case, 600.0 * math.pi, 0.015)
     found = seen[np.argmin(np.abs(seen - point.critical))]
     assert point.growth > 10.0
     assert abs(found - point.critical) < 4e-3 * abs(point.critical)

@@ -6,6 +6,7 @@ import math
 import os
 import re
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,8 @@ from frbcli.linear.critical_map import critical_map
 from frbcli.linear.damped_modes import damped_modes
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability
+from frbcli.plot import style
+from frbcli.plot.machine.modes import shapes_figure
 from frbcli.plot.machine.response import critical_map_figure
 from frbcli.plot.moving import FRAMES, animate_orbits
 
@@ -117,6 +120,14 @@ def test_shapes_pass_through_the_points_of_a_run() -> None:
             place = next(at for mark, at in found.marks if mark == name.partition("_")[2])
             nearest = int(np.argmin(np.abs(found.positions - place)))
             np.testing.assert_allclose(mode.shape[nearest], motion, atol=1e-9)
+
+
+def test_names_of_places_beside_each_other_have_rows_of_their_own() -> None:
+    """The watch of all pictures sees it: "nut" and "compressor" covered each other."""
+    found = damped_modes(frbcli.load_case("jeffcott", ["film.theory=short"]), 200.0)
+    places = found.positions[0] + np.ptp(found.positions) * np.array([0.0, 0.05, 0.12, 0.4, 0.9])
+    marks = tuple(zip(("nut", "compressor", "left", "right", "turbine"), places.tolist(), strict=True))
+    style.picture(shapes_figure(replace(found, marks=marks)), ".png")
 
 
 def test_the_map_shows_the_films_of_the_case() -> None:

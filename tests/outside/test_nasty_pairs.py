@@ -11,6 +11,7 @@ from pathlib import Path
 
 import nasty_pairs
 import pytest
+from nights import seeds_tonight
 from paths import ROOT
 
 from frbcli.case.reading.load import load_case
@@ -20,12 +21,11 @@ from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import BEARING, CYCLES, ROTATION, RUN, STABILITY, WHIRL
 from frbcli.scene.planning.plan import make_plan
 
-BATCH, BATCHES = 48, 8
+PAIRS, INPUTS, NIGHTS = 384, 48, 8  # two in a night to each command, one to each, and of surfaces one
 BATCH_s = 1800.0
 SURFACES = 200  # cases with nasty values of contact, free gas, limited flow and baths
 SEEDS = range(nasty_pairs.SURFACES, nasty_pairs.SURFACES + SURFACES)
 ANALYSES = RUN, ROTATION, WHIRL, BEARING, STABILITY, CYCLES
-NIGHT = 50  # of them in a process
 MEMORY = 4 * 1024**3
 
 
@@ -51,19 +51,19 @@ def tried(folder: Path, seeds: range) -> None:
 def test_every_command_that_takes_a_case_is_tried() -> None:
     of_cases = set(COMMANDS) - {"balance", "waterfall", "report", "export", "cases", "schema", "docs"}
     assert {command[0] for command in nasty_pairs.COMMANDS} == of_cases
-    assert BATCH % len(nasty_pairs.COMMANDS) == 0
+    assert PAIRS // NIGHTS % len(nasty_pairs.COMMANDS) == 0
 
 
 @pytest.mark.nightly
-@pytest.mark.parametrize("batch", range(BATCHES))
-def test_two_nasty_values_break_no_command(batch: int, tmp_path: Path) -> None:
-    tried(tmp_path, range(batch * BATCH, (batch + 1) * BATCH))
+def test_two_nasty_values_break_no_command(tmp_path: Path) -> None:
+    tried(tmp_path, seeds_tonight(range(PAIRS), NIGHTS))
 
 
 @pytest.mark.nightly
 def test_an_input_over_time_and_a_nasty_value_break_no_command(tmp_path: Path) -> None:
     """Pressures, temperatures, speeds, forces and motions of the ground: points and files, good and bad ones."""
-    tried(tmp_path, range(nasty_pairs.OVER_TIME, nasty_pairs.OVER_TIME + BATCH))
+    first = nasty_pairs.OVER_TIME
+    tried(tmp_path, seeds_tonight(range(first, first + INPUTS), INPUTS // len(nasty_pairs.COMMANDS)))
 
 
 def refused(seed: int) -> InputError | None:
@@ -96,6 +96,5 @@ def test_nasty_surfaces_and_gas_are_refused_or_planned() -> None:
 
 
 @pytest.mark.nightly
-@pytest.mark.parametrize("batch", range(SURFACES // NIGHT))
-def test_nasty_surfaces_and_gas_break_no_command(batch: int, tmp_path: Path) -> None:
-    tried(tmp_path, SEEDS[batch * NIGHT : (batch + 1) * NIGHT])
+def test_nasty_surfaces_and_gas_break_no_command(tmp_path: Path) -> None:
+    tried(tmp_path, seeds_tonight(SEEDS, NIGHTS))

@@ -11,6 +11,7 @@ import pytest
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import NotConverged
+from frbcli.results.store import Run
 from frbcli.runs import march
 from frbcli.runs.error_budget import FewerCells, FilmErrors, grows_from, summed
 from frbcli.runs.run import runup
@@ -83,6 +84,12 @@ def test_stated_error_bounds_the_true_one(settings: tuple[str, ...], tmp_path: P
 STARVING = ("accuracy.target=1e-3", "speed.duration=0.2 s", "speed.from=20 Hz", "speed.to=40 Hz", "output.step=1e-3 s")
 
 
+@pytest.fixture(scope="module")
+def fine_cells(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    case = load_case("jeffcott-two-phase", [*STARVING, "accuracy.mesh=[12, 120]"])
+    return runup(case, tmp_path_factory.mktemp("fine") / "fine.h5")
+
+
 @pytest.mark.parametrize(
     "settings",
     [
@@ -91,11 +98,12 @@ STARVING = ("accuracy.target=1e-3", "speed.duration=0.2 s", "speed.from=20 Hz", 
         pytest.param(("accuracy.mesh=[8, 64]",), marks=pytest.mark.nightly),
     ],
 )
-def test_stated_error_of_cells_bounds_the_true_one(settings: tuple[str, ...], tmp_path: Path) -> None:
+def test_stated_error_of_cells_bounds_the_true_one(
+    settings: tuple[str, ...], fine_cells: Run, tmp_path: Path
+) -> None:
     """A film that loses oil; against more than twice the cells of the plan."""
     run = runup(load_case("jeffcott-two-phase", [*STARVING, *settings]), tmp_path / "run.h5")
-    fine = runup(load_case("jeffcott-two-phase", [*STARVING, "accuracy.mesh=[12, 120]"]), tmp_path / "fine.h5")
-    apart = difference(run, fine)
+    apart = difference(run, fine_cells)
     assert 1e-4 < apart.largest < run.error["eccentricity"] < 8.0 * apart.largest
     assert apart.signals["disk_y_m"] < run.error["displacement"]
     assert apart.signals["oil_fraction"] < run.error["oil_fraction"]

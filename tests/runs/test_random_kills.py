@@ -37,9 +37,9 @@ CELLS = ("speed.from=100 Hz", "speed.to=110 Hz", "speed.duration=2 s", "output.s
 APART = ("film.coupling=co-simulation", "accuracy.macro_step=1e-6 s", "speed.from=50 Hz", "speed.to=60 Hz",
          "speed.duration=0.2 s", "output.step=1 ms")  # fmt: skip
 MACHINES = [
-    Machine("table", "jeffcott", SHORT, 60, 400),
-    Machine("cells", "axial-groove-two-phase", CELLS, 20, 20),
-    Machine("co-simulation", "jeffcott", APART, 20, 400),
+    Machine("table", "jeffcott", SHORT, 30, 400),
+    Machine("cells", "axial-groove-two-phase", CELLS, 12, 20),
+    Machine("co-simulation", "jeffcott", APART, 12, 400),
 ]
 
 

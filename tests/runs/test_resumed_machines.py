@@ -28,9 +28,7 @@ COLLAR = (
 )
 HEAT = ('oil.viscosity={grade="SAE 10W-40"}', "thermal.supply_temperature=60 degC", "thermal.housing=70 degC")
 MACHINES = {
-    "collar": ("film.theory=short", *COLLAR),
     "collar and heat": ("film.theory=short", *COLLAR, *HEAT),
-    "tilt": (*TILT, "film.cavitation=reynolds"),
     "tilt and oil": (*TILT, "film.cavitation=elrod", *FED),
     "tilt and collar": (*TILT, *COLLAR),
 }

@@ -141,8 +141,6 @@ SIGNALS = 'output.signals=["force", "film-thickness", "power", "torque", "oil-fl
     [
         pytest.param(["film.theory=short"], id="closed form"),
         pytest.param([], id="tabulated", marks=pytest.mark.nightly),
-        # as the tabulated ones: time loops of their own
-        pytest.param(["film.cavitation=penalty"], id="cells", marks=pytest.mark.nightly),
         pytest.param(["film.cavitation=two-phase"], id="mass-conserving", marks=pytest.mark.nightly),
     ],
 )

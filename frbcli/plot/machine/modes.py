@@ -31,6 +31,8 @@ HEADROOM = 1.25  # of the frequency axis over the rotor speed, at least up to th
 COLUMNS, ROWS = 3, 2
 ORBITS = 9  # of places along a shaft
 TURN = 73  # points of an orbit
+LETTER = 0.03  # of the shaft, of the names of places
+LOWEST, ROW = -1.25, 0.32  # of these, in amplitudes
 COLOUR = {FORWARD: BLUE, BACKWARD: ORANGE}
 
 
@@ -209,8 +211,7 @@ def draw_shape(axes: Any, shapes: DampedModes, mode: DampedMode) -> None:
         thick = 1.3 if place in marked else 0.6
         axes.plot(np.full(TURN, z[place]), orbit[:, 0], orbit[:, 1], color=colour, linewidth=thick, alpha=0.8)
         axes.plot([z[place]], orbit[:1, 0], orbit[:1, 1], color=colour, marker=".", markersize=4.0)
-    for name, at in shapes.marks:
-        axes.text(at * (1e3 if shapes.to_scale else 1.0), 0.0, -1.25, name, fontsize=6.0, ha="center", color=GREY)
+    _label_places(axes, shapes)
     axes.set_xlabel("along the shaft in mm" if shapes.to_scale else "along the shaft", fontsize=7.0, labelpad=-2.0)
     axes.set_ylabel("x", fontsize=7.0, labelpad=-10.0)
     axes.set_zlabel("y", fontsize=7.0, labelpad=-10.0)
@@ -225,6 +226,18 @@ def draw_shape(axes: Any, shapes: DampedModes, mode: DampedMode) -> None:
     decay = f"grows with {growth:.3g} 1/s" if growth > 0.0 else f"damping ratio {mode.damping_ratio:.3g}"
     axes.set_title(f"{mode.frequency_Hz:.4g} Hz, {mode.direction}\n{decay}", fontsize=8.5,
                    color=VERMILION if growth > 0.0 else "black")  # fmt: skip
+
+
+def _label_places(axes: Any, shapes: DampedModes) -> None:
+    """Names below the shaft, each in the lowest row in which it covers none to its left."""
+    ends: list[float] = []  # of the rows
+    letter = LETTER * float(np.ptp(shapes.positions))
+    for name, at in sorted(shapes.marks, key=lambda mark: mark[1]):
+        half = 0.5 * letter * (len(name) + 1)
+        row = next((number for number, end in enumerate(ends) if end < at - half), len(ends))
+        ends[row : row + 1] = [at + half]
+        place = at * (1e3 if shapes.to_scale else 1.0)
+        axes.text(place, 0.0, LOWEST + ROW * row, name, fontsize=6.0, ha="center", color=GREY)
 
 
 def _largest(mode: DampedMode) -> complex:

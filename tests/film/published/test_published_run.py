@@ -126,8 +126,11 @@ def rows_of_elements() -> dict[str, dict[str, str]]:
 ELEMENTS = rows_of_elements()
 
 
+ALIKE = ("circumferential groove, 1 bar, x_1 = 0.99", "axial groove, 2 bar, x_1 = 0.99")  # the rigid rotor; at 1 bar
+
+
 @pytest.mark.nightly  # two time loops
-@pytest.mark.parametrize("what", ELEMENTS)
+@pytest.mark.parametrize("what", [what for what in ELEMENTS if what not in ALIKE])
 def test_run_ups_are_those_of_quadratic_elements(what: str, tmp_path: Path) -> None:
     """Eccentricity after 1 s on 40 x 10 cells, whose diffusion has the same length. Beside an axial groove elements
     create oil without it, too."""

@@ -1,4 +1,5 @@
-"""Random films on cells: the plan holds its target, and the run states its error."""
+"""Random films on cells: the plan holds its target, and the run states its error. Random machines: what a run states of
+its events and slow signals holds what a finer run finds."""
 
 from __future__ import annotations
 
@@ -6,11 +7,9 @@ from pathlib import Path
 
 import pytest
 import unseen_films
+from accuracy import unseen_machines
+from nights import pairs_tonight
 from unseen_films import Found, tried
-
-
-def found(folder: Path, seeds: range | tuple[int, ...]) -> list[Found]:
-    return [each for seed in seeds for each in tried(seed, folder)]
 
 
 def said(film: Found) -> bool:
@@ -49,8 +48,32 @@ def test_steps_are_short_where_their_errors_grow_and_the_target_is_not_called_ce
 
 @pytest.mark.nightly
 def test_unseen_films_hold_their_targets_or_state_their_errors(tmp_path: Path) -> None:
-    """All laws and supplies once more, 36 films with two targets; each begins."""
-    films = found(tmp_path, range(1000, 1000 + len(unseen_films.LAWS) * len(unseen_films.SUPPLIES)))
-    assert len(films) >= 60
+    """Each law with a supply of its own, of 36 films with two targets; each begins."""
+    laws, supplies = len(unseen_films.LAWS), len(unseen_films.SUPPLIES)
+    seeds = (1000 + (pair - 1000) % (laws * supplies) for pair in pairs_tonight(laws, supplies))
+    films = [film for seed in seeds for film in tried(seed, tmp_path)]
+    assert len(films) >= 10
+    assert {film.law for film in films} == set(unseen_films.LAWS)
     assert [film for film in films if not said(film)] == []
     assert {film.status for film in films} <= {"finished", "contact", "starved"}
+
+
+@pytest.mark.parametrize("seed", [2])
+def test_an_unseen_machine_states_how_certain_its_events_are(seed: int, tmp_path: Path) -> None:
+    """A rotor in floating rings, and a rigid one on tables: their steps are as long as they may be, not as their
+    tolerance asks for. The second run had the same steps, and agreed in 0.03 Hz where the finer one is 1.9 Hz off."""
+    machine = unseen_machines.tried(seed, tmp_path)
+    assert machine.events
+    assert machine.lacking == ()
+    assert [number for number in machine.numbers if not number.holds] == []
+
+
+@pytest.mark.nightly
+def test_nine_of_ten_uncertainties_of_unseen_machines_hold(tmp_path: Path) -> None:
+    """All kinds of machines, each with a law of its own."""
+    seeds = pairs_tonight(len(unseen_machines.KINDS), len(unseen_machines.LAWS))
+    machines = [unseen_machines.tried(seed, tmp_path) for seed in seeds]
+    numbers = [n for machine in machines for n in machine.numbers if n.event != "critical-speed"]
+    assert len(numbers) > 12
+    assert [machine.lacking for machine in machines if machine.lacking] == []
+    assert sum(number.holds for number in numbers) >= 0.9 * len(numbers)
