@@ -28,7 +28,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -148,7 +148,9 @@ def film_changes(
 def settled_states(solution: VolumeSolution) -> Array:
     """(STATES, m, k) of the cells of a solution."""
     states = np.zeros((STATES, *solution.w.shape))
-    states[:CARRIED_GAS], states[BEFORE_UPSTREAM] = astuple(solution.state), solution.before
+    for layer, each in enumerate(fields(solution.state)):
+        states[layer] = getattr(solution.state, each.name)
+    states[BEFORE_UPSTREAM] = solution.before
     return states
 
 
