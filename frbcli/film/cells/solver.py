@@ -304,6 +304,15 @@ class FilmSolver:
         right -= kept * states[FRACTION]
         return -right
 
+    def states_at(self, motion: Motion, w: Array) -> Array:
+        """(STATES, m, k) of the cells and openings with the unknown w, of a film without memory; until it is asked
+        for the next ones."""
+        self._states[BEFORE_UPSTREAM] = self._before
+        self._set_states(w)
+        if self.film.edged:
+            set_edges(self.film, gap_rise(self.film, motion), w, self._states)
+        return self._states
+
     def _set_states(self, w: Array) -> None:
         """The states of the cells and openings with the unknown w."""
         cell_states(self._parts[0], self._parts[-1], self._law, 0.0, w, self._states)
