@@ -21,7 +21,7 @@ from frbcli.film.cells.mesh.grid import VolumeGrid, force_weights
 from frbcli.film.gap import Section, gap_height
 
 Records = NDArray[np.record]
-FEW = 64  # films whose geometry is kept
+FEW = 64  # films whose arrays are kept
 TIGHTLY = 1e-4  # settled, where nothing is said of it
 
 CLOSED, GIVEN, FREE, FED = range(4)
@@ -146,30 +146,21 @@ def volume_films(
     settled: float = TIGHTLY,
 ) -> VolumeFilms:
     """The films as arrays; all have grids of the same shape. centrifugal, settled: see FILM."""
-    m, k = films[0].grid.shape
-    data = VolumeFilms(
-        np.zeros(len(films), FILM),
-        np.zeros((len(films), RING_ROWS, m)),
-        np.zeros((len(films), PLACES, k + 1)),
-        np.zeros((len(films), CELL_LAYERS, m, k)),
-        np.zeros(0, CHANNEL),
-        np.zeros(0, FEED_HOLES),
-        np.zeros((0, 0, 2), dtype=np.int64),
-    )
-    for index, film in enumerate(films):
-        data.ring[index], data.places[index], data.cells[index] = _geometry(film.section, film.grid)
-        fall = centrifugal[index] if centrifugal else 0.0
-        data.films[index] = _described(film, fall, settled, bool(data.cells[index, EDGE].any()))
+    data = VolumeFilms(*map(np.concatenate, zip(*map(film_alone, films), strict=True)))
+    data.films["centrifugal"], data.films["settled"] = centrifugal or 0.0, settled
     return data
 
 
 @lru_cache(maxsize=FEW)
 def film_alone(film: VolumeFilm) -> VolumeFilms:
-    """A film as arrays, not to be written to. The arrays of a few films are cached: each is solved often."""
-    return volume_films([film])
+    """A film as arrays, not to be written to. Those of a few films are cached: each is solved often."""
+    ring, places, cells = _geometry(film.section, film.grid)
+    own = np.array([_described(film, bool(cells[EDGE].any()))], FILM)
+    channels, holes, hole_cells = np.zeros(0, CHANNEL), np.zeros(0, FEED_HOLES), np.zeros((0, 0, 2), dtype=np.int64)
+    return VolumeFilms(own, ring[None], places[None], cells[None], channels, holes, hole_cells)
 
 
-def _described(film: VolumeFilm, centrifugal: float, settled: float, edges: bool) -> tuple[Any, ...]:
+def _described(film: VolumeFilm, edges: bool) -> tuple[Any, ...]:
     """The record FILM of a film: all of it at once, for each field by itself takes as long as a film that is solved."""
     section, law, scale = film.section, film.law, film.section.pressure_scale
     slopes, reaches = (of(film.grid.height, section.seals) for of in (end_slopes, end_reaches))
@@ -187,8 +178,8 @@ def _described(film: VolumeFilm, centrifugal: float, settled: float, edges: bool
         "force_scale": section.force_scale,
         "near": near,
         "far": far,
-        "centrifugal": centrifugal,
-        "settled": settled,
+        "centrifugal": 0.0,
+        "settled": TIGHTLY,
         "supplied_gas": law.supplied_gas,
         "gas_content": law.gas_content,
         "follow_at": follow_at,

@@ -211,8 +211,11 @@ def oil_slopes(
         """(m, k, 1 + c) what leaves the cells, and by a velocity of the journal that moves it by g of itself."""
         at = seen_by_grid(replace(motion, omega=omega), g, tilts)
         balances(own, ring, places, cells, states, at, nothing, stencil, fields, np.zeros(FLOWS))
-        net, near, far = -fields[:, :, [k + BY_ITSELF]], -fields[:, :, k + BY_X : k + SIDES], -fields[:, :, k + SIDES :]
-        return np.concatenate([net, near + far, 0.5 * (far - near)] if tilts else [net, near], axis=2)
+        sides: Array = -fields[:, :, k:]
+        if not tilts:
+            return sides
+        net, near, far = sides[:, :, :BY_X], sides[:, :, BY_X:SIDES], sides[:, :, SIDES:]
+        return np.concatenate([net, near + far, 0.5 * (far - near)], axis=2)
 
     faster, both, here = left(motion.omega + step, 0.0), left(motion.omega, 1.0), left(motion.omega, 0.0)
     net, by_rate = here[:, :, :1], here[:, :, 1:]
