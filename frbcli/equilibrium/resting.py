@@ -42,11 +42,13 @@ STUCK, GAIN = 10, 1e-3  # shortened steps in a row that each take less than this
 @dataclass(frozen=True)
 class ForceBalance(Generic[Films]):
     """Journals at given places. residual: (c films,) N left over on them, or N m; slope: (c films, c films) its
-    derivative by the places; films: their state there, from which places near by are solved."""
+    derivative by the places; films: their state there, from which places near by are solved; off: step by which their
+    fields may still have to follow, over their size."""
 
     residual: Array
     slope: Array
     films: Films
+    off: float = 0.0
 
     @property
     def left(self) -> float:
@@ -115,7 +117,7 @@ def search_rest(
             break
         share = whole = min([1.0, *(largest_share(*pair) for pair in zip(there, moved, strict=True))])
         size = max(float(np.abs(moved).max()), besides(step) if besides else 0.0)
-        if size < search.negligible:
+        if max(size, current.off) < search.negligible:
             return replace(here, settled=True)
         arrives = size < search.step
         while True:
@@ -447,7 +449,7 @@ class RestEquations:
             stopped = np.array(spins)[system.pinned | self.sticks]
             surplus[stopped], slope[stopped], slope[:, stopped] = -unknowns[stopped], 0.0, 0.0
             slope[stopped, stopped] = -1.0
-        return ForceBalance(surplus, slope, films)
+        return ForceBalance(surplus, slope, films, max(film.off for film in films))
 
     def _films(self, speeds: Array, places: Array, near: tuple[FilmForce, ...]) -> tuple[FilmForce, ...]:
         """The films with journals at rest at places (films, c) and rings at speeds (rings,) in rad/s."""

@@ -21,7 +21,7 @@ from frbcli.film.cells.mesh.grid import VolumeGrid, force_weights
 from frbcli.film.gap import Section, gap_height
 
 Records = NDArray[np.record]
-FEW = 64  # films whose geometry is kept
+FEW = 64  # films whose arrays are kept
 TIGHTLY = 1e-4  # settled, where nothing is said of it
 
 CLOSED, GIVEN, FREE, FED = range(4)
@@ -146,45 +146,64 @@ def volume_films(
     settled: float = TIGHTLY,
 ) -> VolumeFilms:
     """The films as arrays; all have grids of the same shape. centrifugal, settled: see FILM."""
-    m, k = films[0].grid.shape
-    data = VolumeFilms(
-        np.zeros(len(films), FILM),
-        np.zeros((len(films), RING_ROWS, m)),
-        np.zeros((len(films), PLACES, k + 1)),
-        np.zeros((len(films), CELL_LAYERS, m, k)),
-        np.zeros(0, CHANNEL),
-        np.zeros(0, FEED_HOLES),
-        np.zeros((0, 0, 2), dtype=np.int64),
-    )
-    for index, film in enumerate(films):
-        _describe(film, data.films[index])
-        data.ring[index], data.places[index], data.cells[index] = _geometry(film.section, film.grid)
-        data.films[index].edges = data.cells[index, EDGE].any()
-        data.films[index].centrifugal = centrifugal[index] if centrifugal else 0.0
-        data.films[index].settled = settled
+    data = VolumeFilms(*map(np.concatenate, zip(*map(film_alone, films), strict=True)))
+    data.films["centrifugal"], data.films["settled"] = centrifugal or 0.0, settled
     return data
 
 
-def _describe(film: VolumeFilm, own: np.record) -> None:
-    """own <- the record FILM of a film."""
-    section, scales, law = film.section, film.scales, film.law
-    own.aspect, own.force_scale = section.aspect, section.force_scale
-    own.scales.reference, own.scales.cavitation, own.scales.ambient = scales
-    slopes = end_slopes(film.grid.height, section.seals)
-    for end, edge, slope in zip((own.near, own.far), (section.near, section.far), slopes, strict=True):
-        end.kind, end.rise, end.bend = ENDS[edge], *slope
-    own.near.reach, own.far.reach = end_reaches(film.grid.height, section.seals)
-    own.far.pressure = section.far_pressure / section.pressure_scale if section.far == "groove" else 0.0
-    own.follow_at, own.cells_at = addresses(law)
-    own.solver_at = ring_solver(film.grid.shape[1])
-    own.clips = (BETWEEN_MIDDLES if film.clips_between else BY_CELLS) if law.clips else NO_CLIP
-    own.remembers, own.bored = law.keeps_oil, film.grid.has_bores
-    own.carries_gas, own.supplied_gas, own.gas_content = law.carries_gas, law.supplied_gas, law.gas_content
-    own.roughness, own.shear = section.flow_roughness / section.clearance, section.shear
-    own.diffuses, own.length, own.spread = section.diffusion is not None, *diffusing(section, film.grid)
-    own.parameters[:] = given_parameters(law)
-    own.fraction, own.share, own.supply = 1.0, 1.0, supply_pressure(section) / section.pressure_scale
-    own.given, own.line, own.lowest = supply_line(film)
+@lru_cache(maxsize=FEW)
+def film_alone(film: VolumeFilm) -> VolumeFilms:
+    """A film as arrays, not to be written to. Those of a few films are cached: each is solved often."""
+    ring, places, cells = _geometry(film.section, film.grid)
+    own = np.array([_described(film, bool(cells[EDGE].any()))], FILM)
+    channels, holes, hole_cells = np.zeros(0, CHANNEL), np.zeros(0, FEED_HOLES), np.zeros((0, 0, 2), dtype=np.int64)
+    return VolumeFilms(own, ring[None], places[None], cells[None], channels, holes, hole_cells)
+
+
+def _described(film: VolumeFilm, edges: bool) -> tuple[Any, ...]:
+    """The record FILM of a film: all of it at once, for each field by itself takes as long as a film that is solved."""
+    section, law, scale = film.section, film.law, film.section.pressure_scale
+    slopes, reaches = (of(film.grid.height, section.seals) for of in (end_slopes, end_reaches))
+    grooves = 0.0, section.far_pressure / scale if section.far == "groove" else 0.0
+    near, far = (
+        (ENDS[kind], *slope, groove, reach)
+        for kind, slope, groove, reach in zip((section.near, section.far), slopes, grooves, reaches, strict=True)
+    )
+    follow_at, cells_at = addresses(law)
+    length, spread = diffusing(section, film.grid)
+    line = supply_line(film)
+    values = {
+        "aspect": section.aspect,
+        "scales": film.scales,
+        "force_scale": section.force_scale,
+        "near": near,
+        "far": far,
+        "centrifugal": 0.0,
+        "settled": TIGHTLY,
+        "supplied_gas": law.supplied_gas,
+        "gas_content": law.gas_content,
+        "follow_at": follow_at,
+        "cells_at": cells_at,
+        "solver_at": ring_solver(film.grid.shape[1]),
+        "clips": (BETWEEN_MIDDLES if film.clips_between else BY_CELLS) if law.clips else NO_CLIP,
+        "remembers": law.keeps_oil,
+        "carries_gas": law.carries_gas,
+        "bored": film.grid.has_bores,
+        "edges": edges,
+        "roughness": section.flow_roughness / section.clearance,
+        "shear": section.shear,
+        "diffuses": section.diffusion is not None,
+        "length": length,
+        "spread": spread,
+        "fraction": 1.0,
+        "share": 1.0,
+        "supply": supply_pressure(section) / scale,
+        "given": line.given,
+        "line": line.line,
+        "lowest": line.lowest,
+        "parameters": given_parameters(law),
+    }
+    return tuple(values[name] for name in FILM.names)
 
 
 @lru_cache(maxsize=FEW)

@@ -189,6 +189,12 @@ class VolumeFilm:
             section.ambient_pressure / section.pressure_scale,
         )
 
+    @property
+    def is_followed(self) -> bool:
+        """Whether its field follows from the motion alone, and smoothly: not that of a film that keeps its oil, whose
+        fronts lie between cells, or whose openings take what their supply gives."""
+        return not self.law.keeps_oil and math.isinf(self.section.largest_flow)
+
     def full(self) -> Array:
         """(m, k) unknown of a full film at the ambient pressure, gas in the oil being in equilibrium."""
         return np.full(self.grid.shape, self.law.standing(self.scales))

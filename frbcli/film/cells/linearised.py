@@ -28,7 +28,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -37,6 +37,7 @@ import numpy as np
 from frbcli.arrays import Array, Complex
 from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.compiled import given_parameters
+from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balance.balances import FLOWS, SUPPLY_NET, balances, without_ends
 from frbcli.film.cells.balance.boundaries import ALL
 from frbcli.film.cells.balance.faces import press_cells
@@ -64,6 +65,9 @@ if TYPE_CHECKING:
 
 
 SPEED_STEP = 1e-6  # share of the speed by which it is changed for a derivative
+# Of films that are followed: a step over the largest unknown below which their force serves to seek on, and the most
+# steps to there.
+FOLLOWED, STEPS = 1e-3, 6
 NUDGE = 1e-4  # of the gap, the pace and the filling, for derivatives of a film whose supply is limited
 
 
@@ -91,6 +95,8 @@ def steady_force(
     d, v = np.asarray(displacement) / c, np.asarray(velocity) / c
     motion = Motion((float(d[0]), float(d[1])), (float(v[0]), float(v[1])), omega)
     solver = _solver(film, motion)
+    if start is not None and (followed := _followed_force(solver, motion, start)) is not None:
+        return followed
     try:
         solution = solver.steady(motion, start)
     except FilmUnsolved:
@@ -100,25 +106,51 @@ def steady_force(
     return settled_force(solver, motion, solution)
 
 
+def _followed_force(solver: FilmSolver, motion: Motion, w: Array) -> FilmForce | None:
+    """As settled_force, of a film that is followed from a field w near by: whoever seeks the motion asks again until
+    nothing moves, so that it need not be solved to round-off before. None of films that have to be, and where its steps
+    do not become small at once."""
+    film = solver.film
+    if not film.is_followed or any(motion.v) or motion.tilts:
+        return None
+    states, before = solver.states_at(motion, w), math.inf
+    for _ in range(STEPS):
+        changes, by_changes = _newton_step(solver, motion, states, tilts=False)
+        w = w + changes[:, :, 0]
+        off = float(np.max(np.abs(changes[:, :, 0])) / np.max(np.abs(w)))
+        if not off < before:
+            return None
+        states, before = solver.states_at(motion, w), off
+        if off < FOLLOWED:
+            return replace(_force(solver, motion, states, w, changes, by_changes), off=off)
+    return None
+
+
 def settled_force(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> FilmForce:
     """Force and derivatives, in SI units, of a steady film that a solver has solved, with the slopes of its field if it
     is mass-conserving. Where the edge of its cavity lies within cells, its sources follow the motion, too."""
     if solution.filling < ALL:
         return _force_at_flow(solver, motion, solution)
-    film, clearance = solver.film, solver.film.section.clearance
-    changes, by_changes = film_changes(solver, motion, solution)
-    moved, faster = changes[:, :, :2] / clearance, changes[:, :, 4]
+    states = settled_states(solution)
+    return _force(solver, motion, states, solution.field, *_newton_step(solver, motion, states, tilts=False))
+
+
+def _force(
+    solver: FilmSolver, motion: Motion, states: Array, field: Array, changes: Array, by_changes: Array
+) -> FilmForce:
+    """Force and derivatives of a film with the states of its cells, see _newton_step."""
+    film, clearance, state = solver.film, solver.film.section.clearance, CellState(*states[:CARRIED_GAS])
     by_moved, by_moving, by_faster = np.split(by_changes, [2, 4], axis=1)
     followed = None
     if not film.law.carries_gas:
-        place, fraction = clearance * np.array(motion.d), solution.state.fraction_slope
-        followed = FieldSlopes(place, motion.omega, moved, faster, fraction, by_faster[:, 0])
+        place, moved = clearance * np.array(motion.d), changes[:, :, 1:3] / clearance
+        followed = FieldSlopes(place, motion.omega, moved, changes[:, :, 5], state.fraction_slope, by_faster[:, 0])
     return FilmForce(
-        np.array(force(film, film.mean_pressure(solution.state))),
+        np.array(force(film, film.mean_pressure(state))),
         by_moved / clearance,
         by_moving / clearance,
-        solution.field,
-        None if film.edged else solution.state.fraction,
+        field,
+        None if film.edged else state.fraction,
         followed,
     )
 
@@ -130,48 +162,64 @@ def film_changes(
     that a solver has settled, (m, k, 2 c + 1), and the c loads, (c, 2 c + 1) in N and N s. c: the 2 of the
     displacement, or 4 with its growth over the width, to which moments over the width belong; tilts: whether that
     counts."""
-    film, data, (m, k), states = solver.film, solver.data, solution.w.shape, settled_states(solution)
+    changes, by_changes = _newton_step(solver, motion, settled_states(solution), tilts)
+    return changes[:, :, 1:], by_changes
+
+
+def _newton_step(solver: FilmSolver, motion: Motion, states: Array, tilts: bool) -> tuple[Array, Array]:
+    """As film_changes, of a film with the states (STATES, m, k) of its cells; before the changes of the unknowns stands
+    their step of Newton's method, which is nothing in a settled film without memory."""
+    film, data, (m, k) = solver.film, solver.data, states.shape[1:]
     own, ring, places, cells = data.films[0], data.ring[0], data.places[0], data.cells[0]
-    stencil, by_place, by_rate, by_total = oil_slopes(own, ring, places, cells, states, motion, tilts)
+    stencil, net, by_place, by_rate, by_total = oil_slopes(own, ring, places, cells, states, motion, tilts)
     if film.edged:
         for slopes, source in zip((by_place, by_rate), edge_slopes(film, motion, states[PRESSURE]), strict=True):
             slopes -= cells[AREA][:, :, None] * source
-    fields = np.concatenate([np.zeros((m, k, k)), -by_place, -by_rate, -by_total], axis=2)
-    solve_blocks(stencil, np.zeros((m, k, k)), fields, stencil[0, 0], fields[0, 0])
+    right = np.concatenate([net, by_place, by_rate, by_total], axis=2)
+    fields = np.empty((m, k, k + right.shape[2]))
+    np.negative(right, out=fields[:, :, k:])
+    solve_blocks(stencil, np.empty((m, k, k)), fields, stencil[0, 0], fields[0, 0])
     changes, push = fields[:, :, k:], np.zeros((4, m, k))
     press_cells(own, ring, cells, states, np.zeros((m, k, k + SIDES)), push)
     by_cells = own.force_scale * push[:2] * states[PRESSURE_SLOPE]
     shares = (1.0, film.grid.height - 0.5)[: 1 + tilts]
-    return changes, np.tensordot(np.concatenate([share * by_cells for share in shares]), changes, 2)
+    pushes = np.concatenate([share * by_cells for share in shares])
+    return changes, np.tensordot(pushes, changes[:, :, 1:], 2)
 
 
 def settled_states(solution: VolumeSolution) -> Array:
     """(STATES, m, k) of the cells of a solution."""
     states = np.zeros((STATES, *solution.w.shape))
-    states[:CARRIED_GAS], states[BEFORE_UPSTREAM] = astuple(solution.state), solution.before
+    for layer, each in enumerate(fields(solution.state)):
+        states[layer] = getattr(solution.state, each.name)
+    states[BEFORE_UPSTREAM] = solution.before
     return states
 
 
 def oil_slopes(
     own: np.record, ring: Array, places: Array, cells: Array, states: Array, motion: Motion, tilts: bool = False
-) -> tuple[Array, Array, Array, Array]:
-    """Derivatives of what leaves the cells of a settled film, see balances for the arguments: the stencil
+) -> tuple[Array, Array, Array, Array, Array]:
+    """What leaves the cells of a film (m, k, 1), see balances for the arguments, and its derivatives: the stencil
     (ENTRIES, m, k) by their unknowns, and (m, k, c) by the displacement and the velocity over the clearance, (m, k, 1)
     by omega_J + omega_S, in which it is linear but for artificial diffusion. c, tilts: see film_changes."""
     m, k = states.shape[1:]
     stencil, nothing, step = np.zeros((ENTRIES, m, k)), np.zeros((m, k)), math.copysign(1.0, motion.omega)
+    fields = np.empty((m, k, k + (ALL_SIDES if tilts else SIDES)))
     step = step * max(abs(motion.omega), 1.0) * (SPEED_STEP if own.diffuses else 1.0)
 
     def left(omega: float, g: float) -> Array:
         """(m, k, 1 + c) what leaves the cells, and by a velocity of the journal that moves it by g of itself."""
-        fields = np.zeros((m, k, k + (ALL_SIDES if tilts else SIDES)))
         at = seen_by_grid(replace(motion, omega=omega), g, tilts)
         balances(own, ring, places, cells, states, at, nothing, stencil, fields, np.zeros(FLOWS))
-        net, near, far = -fields[:, :, [k + BY_ITSELF]], -fields[:, :, k + BY_X : k + SIDES], -fields[:, :, k + SIDES :]
-        return np.concatenate([net, near + far, 0.5 * (far - near)] if tilts else [net, near], axis=2)
+        sides: Array = -fields[:, :, k:]
+        if not tilts:
+            return sides
+        net, near, far = sides[:, :, :BY_X], sides[:, :, BY_X:SIDES], sides[:, :, SIDES:]
+        return np.concatenate([net, near + far, 0.5 * (far - near)], axis=2)
 
     faster, both, here = left(motion.omega + step, 0.0), left(motion.omega, 1.0), left(motion.omega, 0.0)
-    return stencil, (both - here)[:, :, 1:], here[:, :, 1:], (faster - here)[:, :, :1] / step
+    net, by_rate = here[:, :, :1], here[:, :, 1:]
+    return stencil, net, (both - here)[:, :, 1:], by_rate, (faster - here)[:, :, :1] / step
 
 
 def _force_at_flow(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> FilmForce:
@@ -280,7 +328,7 @@ def linear_cells(
     if film.law.carries_gas:
         return LinearFilm(*linear_states(film, motion, solution, weights, tilts), solution.field, ordered=True)
     parts = data.films[0], data.ring[0], data.places[0], data.cells[0]
-    stencil, *slopes = oil_slopes(*parts, settled_states(solution), motion, tilts)
+    stencil, _, *slopes = oil_slopes(*parts, settled_states(solution), motion, tilts)
     by_place, by_rate, by_total = (each.reshape(solution.w.size, -1) for each in slopes)
     storage = np.where(film.grid.fixed, 0.0, film.grid.area * film.gaps(motion) * state.fraction_slope)
     shares = (1.0, film.grid.height - 0.5)[: 1 + tilts]
@@ -315,7 +363,7 @@ def _with_filling(film: LinearFilm, solver: FilmSolver, motion: Motion, solution
     data, states = solver.data, settled_states(solution)
     own, parts = data.films[0], (data.ring[0], data.places[0], data.cells[0])
     open_ = data.cells[0][UNKNOWN].ravel() != 0.0
-    stencil, by_place, *_ = oil_slopes(without_ends(own), *parts, states, motion)
+    stencil, _, by_place, *_ = oil_slopes(without_ends(own), *parts, states, motion)
     outflow, by_place = -(open_ @ by_neighbours(stencil)), by_place.reshape(len(open_), -1)
     by_filling, by_supply, push = _by_filling(solver, motion, solution)
     return LinearFilm(

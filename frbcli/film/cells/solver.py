@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import lru_cache
 
 import numpy as np
 
@@ -45,7 +44,7 @@ from frbcli.film.cells.balance.states import (
 )
 from frbcli.film.cells.block_cyclic import CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.cavity_edge import GapRise, full_cells, gap_rise, set_edges
-from frbcli.film.cells.data import SIDES, VolumeFilms, volume_films
+from frbcli.film.cells.data import SIDES, film_alone
 from frbcli.film.cells.film import Flows, Motion, Storage, VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.balance import FreeGas, GasMixing, KeptGas, free_gas
 from frbcli.film.cells.gas.carry import FACTOR, GAS_PAST, HEIGHT, PATHS, carry_gas, follow_oil, replace_oil
@@ -62,7 +61,6 @@ GAS_ROUND_OFF, GAS_SETTLED = 1e-13, 1e-11  # what free gas is off by; the latter
 # How close cells come to their balances where gas is solved with the oil: where it begins to go with the oil, and last.
 # Solutions that are REPEATED may leave more, times PASSED_ON for each that follows and leaves a tenth of it.
 BEGUN, CLOSE, PASSED_ON = 1e-4, 1e-14, 10.0
-FEW = 16  # films whose arrays are kept
 TINY = np.finfo(float).tiny
 RUNS_DRY = "the film runs dry: more oil leaves at its ends than can enter it"
 # A film is at rest that exchanges less than these shares of what its surfaces can carry, and of its oil in a time step.
@@ -91,18 +89,12 @@ GAS_BEGINS: tuple[Attempt, ...] = (GAS_DAMPED, GAS_GENTLE)
 GAS_ATTEMPTS: tuple[Attempt, ...] = (replace(PLAIN, limit=60), *GAS_BEGINS)
 
 
-@lru_cache(maxsize=FEW)
-def _alone(film: VolumeFilm) -> VolumeFilms:
-    """A film as arrays, not to be written to. The arrays of a few films are cached: each is solved often."""
-    return volume_films([film])
-
-
 class FilmSolver:
     """Solves one film for any motion. Its arrays are filled anew in every iteration."""
 
     def __init__(self, film: VolumeFilm, like: VolumeFilm | None = None) -> None:
         """like: a film that differs from this one in the numbers of its law alone, if its arrays may be at hand."""
-        kept, (m, k) = _alone(film if like is None else like), film.grid.shape
+        kept, (m, k) = film_alone(film if like is None else like), film.grid.shape
         self.film, self.data = film, kept._replace(films=kept.films.copy())  # how full its openings are is set here
         self.data.films["parameters"][0] = given_parameters(film.law)
         self._parts = self.data.films[0], self.data.ring[0], self.data.places[0], self.data.cells[0]
@@ -311,6 +303,15 @@ class FilmSolver:
         right = self._fields[:, :, w.shape[1]]
         right -= kept * states[FRACTION]
         return -right
+
+    def states_at(self, motion: Motion, w: Array) -> Array:
+        """(STATES, m, k) of the cells and openings with the unknown w, of a film without memory; until it is asked
+        for the next ones."""
+        self._states[BEFORE_UPSTREAM] = self._before
+        self._set_states(w)
+        if self.film.edged:
+            set_edges(self.film, gap_rise(self.film, motion), w, self._states)
+        return self._states
 
     def _set_states(self, w: Array) -> None:
         """The states of the cells and openings with the unknown w."""

@@ -205,7 +205,8 @@ class FieldSlopes:
 class FilmForce:
     """Force on the journal by a whole section, N; stiffness dF/dD (2, 2) in N/m and damping dF/dD' (2, 2) in N s/m;
     field: of a finite-volume film, from which a film near by is sought, see VolumeSolution; fraction: (m, k) its oil
-    fractions, None of others; slopes: of the field, None of films without one and where they are not known."""
+    fractions, None of others; slopes: of the field, None of films without one and where they are not known; off: last
+    step of a field that was followed over its largest unknown: what derivatives are off by, the force by its square."""
 
     force: Array
     by_displacement: Array
@@ -213,6 +214,7 @@ class FilmForce:
     field: Array | None = None
     fraction: Array | None = None
     slopes: FieldSlopes | None = None
+    off: float = 0.0
 
     def foreseen(self, place: Array, total: float | None = None) -> FilmForce:
         """This film with field and oil fractions to first order as they are with its journal at rest at another place

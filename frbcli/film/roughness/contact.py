@@ -93,6 +93,7 @@ class ElasticShell:
             force.by_velocity @ felt,
             force.field,
             force.fraction,
+            off=force.off,
         )
 
 

@@ -9,7 +9,7 @@ from frbcli.compiled import compiled
 from frbcli.film.cells.balance.balances import falls_to_air, flow_at_end, section_end
 from frbcli.film.cells.balance.grid_motion import GridMotion, seen_by_grid
 from frbcli.film.cells.balance.states import PRESSURE, STATES
-from frbcli.film.cells.data import CLOSED, UNKNOWN, VolumeFilms, volume_films
+from frbcli.film.cells.data import CLOSED, UNKNOWN, VolumeFilms, film_alone
 from frbcli.film.cells.film import Motion, VolumeFilm
 
 
@@ -34,8 +34,8 @@ def side_flow(
 
 def outflow(film: VolumeFilm, motion: Motion, pressure: Array, known: VolumeFilms | None = None) -> float:
     """Outflow through the open ends of the whole bearing in m^3/s, or of a land where the lands differ. pressure (m,
-    k): scaled gauge pressures of the cells; known: the film as arrays, if it is at hand."""
-    section, data = film.section, known or volume_films([film])
+    k): scaled gauge pressures of the cells; known: the film as arrays, where its openings are filled in part."""
+    section, data = film.section, known or film_alone(film)
     states = np.zeros((STATES, *pressure.shape))
     states[PRESSURE] = pressure
     unit = section.copies * section.radius * section.width * section.clearance

@@ -51,7 +51,7 @@ from frbcli.film.cells.balance.states import (
     UPWIND,
     cell_states,
 )
-from frbcli.film.cells.data import volume_films
+from frbcli.film.cells.data import film_alone
 from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.carry import (
     GAS_PAST,
@@ -335,7 +335,7 @@ class _Settled:
     """The balances of a film near a settled solution with the free gas `gas`; rated: 1 / (1 + tau r)."""
 
     def __init__(self, film: VolumeFilm, gas: FreeGas, pressure: Array) -> None:
-        data = volume_films([film])
+        data = film_alone(film)
         self.film, self._own = film, (data.films[0], data.ring[0], data.places[0], data.cells[0])
         self._law = np.append(given_parameters(film.law), np.nan)  # where a cell is empty: not asked for here
         _, self.time = film.law.exchanged(pressure, gas.carried.gas, film.scales)
