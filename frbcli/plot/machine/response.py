@@ -201,11 +201,17 @@ def critical_map_figure(speeds: CriticalMap) -> Figure:
 
 def draw_critical_map(axes: Axes, speeds: CriticalMap) -> None:
     """The map on axes of a figure: critical speeds in Hz over the stiffness in N/m."""
-    for values, colour, dashes, name in (
-        (speeds.forward, BLUE, "-", "forward whirl"), (speeds.backward, ORANGE, (0, (5, 2)), "backward whirl"),
-    ):  # fmt: skip
+    top = max(abs(speeds.case.speed.start), abs(speeds.case.speed.end))
+    highest = min(max(2.0 * top, float(np.nanmax([speeds.forward, speeds.backward]))), 20.0 * top)
+    for values, colour, dashes, name, column in (
+        (speeds.forward, BLUE, "-", "forward whirl", 6),
+        (speeds.backward, ORANGE, (0, (5, 2)), "backward whirl", 28),
+    ):
         for number, curve in enumerate(values.T):
             axes.plot(speeds.stiffness, curve, color=colour, linestyle=dashes, label=name if number == 0 else None)
+            if curve[-1] <= highest:  # NaN of a mode that is missing is not
+                axes.annotate(f"{number + 1}{name[0].upper()}", (float(speeds.stiffness[-1]), curve[-1]), (column, 0),
+                              textcoords="offset points", color=colour, va="center")  # fmt: skip
     for number, springs in enumerate(speeds.film_stiffness.T if len(speeds.film_speeds_Hz) else ()):
         if np.isnan(springs).all():
             continue
@@ -214,12 +220,11 @@ def draw_critical_map(axes: Axes, speeds: CriticalMap) -> None:
         marker = FILM_MARKS[number % 3] if len(springs) < FEW else ""
         axes.plot(springs, speeds.film_speeds_Hz, color=VERMILION, linestyle=FILM_DASHES[number % 3], marker=marker,
                   markersize=5.0, label=label)  # fmt: skip
-    top = max(abs(speeds.case.speed.start), abs(speeds.case.speed.end))
     axes.axhline(top, color=GREY, linewidth=0.8, linestyle=(0, (1, 2)), label="highest speed of the case")
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.set_xlim(float(speeds.stiffness[0]), float(speeds.stiffness[-1]))
     lowest = float(np.nanmin([speeds.forward, speeds.backward]))
-    axes.set_ylim(max(lowest, 0.02 * top), 20.0 * top)
+    axes.set_ylim(max(lowest, 0.02 * top), 1.2 * highest)
     axes.set_xlabel("stiffness of a bearing in N/m")
     axes.set_ylabel("critical speed in Hz")

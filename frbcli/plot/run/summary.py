@@ -30,7 +30,7 @@ from frbcli.case.run import speed_unit_of
 from frbcli.equilibrium.ring_speed import concentric_ratios
 from frbcli.errors import InputError
 from frbcli.plot.curves import Over, curves_figure, draw_curves
-from frbcli.plot.run.motion import draw_distances, draw_eccentricity
+from frbcli.plot.run.motion import draw_distances, draw_eccentricity, draw_largest
 from frbcli.plot.signals import (
     MICRO,
     bearing_of,
@@ -50,6 +50,7 @@ from frbcli.plot.style import (
     BAND,
     BLACK,
     BLUE,
+    COLOURS,
     GREY,
     MOST_MARKED,
     SKY,
@@ -106,8 +107,7 @@ def summary_figure(run: Run) -> Figure:
     with styled():
         figure = new_figure(title, ", ".join(word for word in words if word), height=7.6)
         above, middle, below = figure.subplots(3, 1, sharex=True, height_ratios=(3.0, 4.0, 1.4))
-        draw = draw_eccentricity if any(True for _ in films(run.signals)) else draw_distances
-        draw(above, [run])
+        _draw_motion(above, run)
         above.set_xlim(begin, end)
         legend_beside(above)
         if len(run) >= FEWEST_SAMPLES:
@@ -130,6 +130,16 @@ def summary_figure(run: Run) -> Figure:
             words.append(f"{left_out} of {len(marked)} events have no room for their names")
             set_title(figure, title, ", ".join(word for word in words if word))
     return figure
+
+
+def _draw_motion(axes: Axes, run: Run) -> None:
+    """Eccentricities, of several films the largest ones; without films distances."""
+    named = list(films(run.signals))
+    if len(named) > 1:
+        for film, colour in zip(named, itertools.cycle(COLOURS), strict=False):
+            draw_largest(axes, run, film, colour, label=film)
+    else:
+        (draw_eccentricity if named else draw_distances)(axes, [run])
 
 
 def _draw_speed(axes: Axes, run: Run) -> None:
