@@ -289,7 +289,6 @@ def times_of_speeds(run: Run, speeds_Hz: Sequence[float]) -> list[float]:
 
 SLOWEST = 0.02  # share of the highest rotor speed below which the ratio is not drawn
 ROOM = 1.15  # above the highest curve
-PAPER = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5}
 START = 0.05  # share of the run after which the highest value is sought: a rotor that falls drags its rings
 
 
@@ -328,12 +327,8 @@ def _draw_concentric(axes: Axes, concentric: dict[str, float]) -> None:
     for value in sorted(set(concentric.values())):
         alike = [name for name, own in concentric.items() if own == value]
         ring = alike[0] if len(alike) < len(concentric) else ""
-        axes.axhline(value, color=GREY, linestyle=(0, (5, 3)), linewidth=0.9)
-        axes.annotate(
-            " ".join(word for word in ("torque balance, concentric", ring) if word) + f": {value:.3f}",
-            (1.0, value), (-4, 3), xycoords=axes.get_yaxis_transform(), textcoords="offset points",
-            ha="right", va="bottom", color=GREY, bbox=PAPER,
-        )  # fmt: skip
+        label = " ".join(word for word in ("torque balance, concentric", ring) if word) + f": {value:.3f}"
+        axes.axhline(value, color=GREY, linestyle=(0, (5, 3)), linewidth=0.9, label=label)
 
 
 def _turning(run: Run) -> list[str]:
