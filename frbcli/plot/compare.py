@@ -187,7 +187,7 @@ def _draw_ridges(panels: Sequence[Axes], drawn: Sequence[Drawn]) -> None:
     above.set_ylabel("synchronous in µm")
     above.set_ylim(bottom=0.0)
     if whirls:
-        whirls[0].set_ylabel("whirl in Hz, dotted: onset")
+        whirls[0].set_ylabel("whirl in Hz\n(dotted: onset)")
         whirls[1].set_ylabel("whirl in µm")
         whirls[1].set_ylim(bottom=0.0)
     for axes in panels[:-1]:

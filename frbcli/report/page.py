@@ -284,7 +284,7 @@ def report(
         script=script,
         cards=_cards(run, shown, unit),
         events=[_event(number, event, unit) for number, event in enumerate(shown, start=1)],
-        certainty=about_certainty(shown, run.cost, unit),
+        certainty=about_certainty(run, shown, unit),
         speed_unit=unit.head,
         waterfall=None if waterfall is None else Waterfall(Markup(waterfall.svg), Markup(waterfall.data)),
         waterfall_note="" if spectra is None else _note(run, signal, reading(spectra)),

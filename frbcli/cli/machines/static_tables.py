@@ -179,7 +179,7 @@ def _machine_row(state: FilmState) -> tuple[str, ...]:
 @dataclass(frozen=True)
 class Totals:
     """A whole machine at a speed in Hz: power in W and flow in m^3/s of its bearings, rings: their speeds over the
-    rotor's, by bearing; bearings: 2 where the films are those of one of two equal bearings."""
+    rotor's, by bearing; bearings: 2 where the films are of one of two equal bearings."""
 
     speed_Hz: float
     power: float
@@ -199,7 +199,7 @@ class Totals:
 
 
 def _bearings(case: Case) -> int:
-    """Number of equal bearings that the films of a case stand for."""
+    """Number of equal bearings, of which the films of a case are one."""
     return 2 if case.given_rotor is not None and case.rotor.symmetric else 1
 
 
