@@ -29,7 +29,7 @@ MINUS_ZERO = re.compile(r"^-(?=0(?:\.0*)?[^\d.]*$)")  # of round-off below zero,
 LARGEST_PLAIN = 1e6  # below it, numbers with a number of digits have no powers of ten
 NOTHING = 1e-12  # of the largest entry of a matrix: an entry that is zero but for round-off
 SCALES = {  # over SI
-    "um": 1e6, "bar": 1e-5, "MPa": 1e-6, "mm^3/s": 1e9, "mPa s": 1e3, "N/um": 1e-6, "N s/mm": 1e-3, "ml/s": 1e6,
+    "um": 1e6, "bar": 1e-5, "MPa": 1e-6, "mm^3/s": 1e9, "mPa s": 1e3, "N/um": 1e-6, "N s/mm": 1e-3, "l/min": 6e4,
 }  # fmt: skip
 
 

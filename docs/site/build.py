@@ -19,7 +19,7 @@ from pathlib import Path
 import click
 
 import frbcli
-from frbcli.cli.main import COMMANDS, frb
+from frbcli.cli.main import COMMANDS, GROUPS, frb
 from frbcli.linear.sheets.film_state import FilmState
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -142,7 +142,8 @@ def command_page(name: str, output: str, quick: bool) -> str:
     """Help, line, output and picture of one command."""
     command = frb.get_command(click.Context(frb), name)
     assert command is not None
-    context = click.Context(command, info_name=f"frb {name}", max_content_width=WIDTH, terminal_width=WIDTH)
+    context = click.Context(command, info_name=f"frb {name}", max_content_width=WIDTH, terminal_width=WIDTH,
+                            help_option_names=["-h", "--help"])  # fmt: skip
     words, picture = SHOWN[name]
     line = " ".join(f'"{word}"' if " " in word or '"' in word else word for word in words)
     lines = output.rstrip().splitlines()
@@ -214,7 +215,7 @@ def _printed_state(row: dict[str, str]) -> FilmState:
 
 def configuration(source: Path, target: Path) -> str:
     """Settings of MkDocs: no fonts and scripts from elsewhere, equations by equations.py."""
-    commands = "\n".join(f"      - {name}: commands/{name}.md" for name in COMMANDS)
+    commands = "\n".join(f"      - {name}: commands/{name}.md" for names in GROUPS.values() for name in names)
     guides = ("cases", "floating-rings", "rotors", "elements", "surroundings", "heat", "thrust", "bearing-sheet",
               "limit-cycles", "gas-and-contact", "measurements", "sweeps", "report", "standards")  # fmt: skip
     concepts = ("conventions", "theory", "equations", "couplings", "accuracy", "validation", "textbooks")

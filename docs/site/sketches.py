@@ -1,4 +1,4 @@
-"""Draw the sketches of docs/terms.md: `python docs/site/sketches.py [FOLDER]`, by default docs/images.
+"""Draw the sketches of terms.md and rotors.md: `python docs/site/sketches.py [FOLDER]`, by default docs/images.
 
 The clearances are far too large, so that the film is visible. Angles, signs and frames are those of
 docs/conventions.md.
@@ -247,10 +247,10 @@ def whirl(figure: Figure) -> None:
     right.annotate("critical speed", (natural, natural), (0.2, 1.5), va="center", arrowprops=LEADER)
     right.annotate("onset of whirl", (onset, 0.49 * onset), (1.3, 0.3), va="center", arrowprops=LEADER)
     right.annotate("lock-in", (lock, 0.97), (2.0, 0.6), va="center", arrowprops=LEADER)
-    right.text(2.1, 2.28, "ω, unbalance", color=GREEN, ha="right")
+    right.text(2.1, 2.28, "1X, unbalance", color=GREEN, ha="right")
     right.text(1.68, 0.76, "whirl", color=VERMILION, va="top", weight="bold")
     right.text(2.62, 0.9, "whip", color=ORANGE, va="top", ha="center", weight="bold")
-    right.text(2.95, 1.55, "ω/2", color=GREY, ha="right", va="bottom")
+    right.text(2.95, 1.55, "0.5X", color=GREY, ha="right", va="bottom")
     right.text(0.05, 1.03, "natural frequency", color=BLUE, va="bottom", fontsize=8)
     right.set_xlim(0.0, end)
     right.set_ylim(0.0, 2.4)
@@ -261,11 +261,138 @@ def whirl(figure: Figure) -> None:
     right.grid(False)
 
 
+def parts(figure: Figure) -> None:
+    """Supplies and parts of a machine, each with the key of a case that describes it."""
+    drawn = (
+        ("axial-grooves", _grooves), ("bores", _bores), ("pocket", _pocket), ("[bearing.pin]", _pin),
+        ('kind = "cartridge"', _cartridge), ("[bearing.damper]", _damper), ("[bearing.support], [housing]", _support),
+        ("[[thrust_bearing]]", _pad),
+    )  # fmt: skip
+    for axes, (title, draw) in zip(figure.subplots(2, 4).flat, drawn, strict=True):
+        draw(panel(axes, title, (-1.6, 1.6), (-1.45, 1.4)))
+        axes.title.set_fontsize(8.5)
+
+
+def _section(axes: Axes, ring: float = 0.0) -> None:
+    """Shell, film and journal across the axis, with a ring in the film up to a radius."""
+    for radius, colour in ((1.25, SHELL), (1.0, OIL), *([(ring, RING), (0.72, OIL)] if ring else []), (0.6, STEEL)):
+        axes.add_patch(Circle((0, 0), radius, facecolor=colour, edgecolor="black", linewidth=0.8))
+
+
+def _opening(axes: Axes, at: float, half: float, depth: float) -> None:
+    """An opening of the shell about an angle in degrees from the top, so deep."""
+    axes.add_patch(Wedge((0, 0), 1.0 + depth, 90 + at - half, 90 + at + half, width=depth + 0.02, facecolor=OIL,
+                         edgecolor="black", linewidth=0.8))  # fmt: skip
+
+
+def _note(axes: Axes, words: str) -> None:
+    axes.text(0, -1.4, words, ha="center", va="center", fontsize=7.5)
+
+
+def _grooves(axes: Axes) -> None:
+    _section(axes)
+    for at in (60, -120):
+        _opening(axes, at, 12, 0.12)
+    arc(axes, (0, 0), 0.8, (90, 138), BLUE)
+    _note(axes, "count, position, opening_angle")
+
+
+def _bores(axes: Axes) -> None:
+    _section(axes)
+    for at in range(0, 360, 60):
+        _opening(axes, at, 4, 0.25)
+    _note(axes, "count, diameter, on")
+
+
+def _pocket(axes: Axes) -> None:
+    _section(axes)
+    _opening(axes, 0, 35, 0.1)
+    _note(axes, "position, opening_angle, width")
+
+
+def _pin(axes: Axes) -> None:
+    _section(axes, 0.9)
+    axes.add_patch(Rectangle((-0.14, 0.72), 0.28, 0.24, facecolor=OIL, edgecolor="none"))
+    axes.add_patch(Rectangle((-0.07, 0.78), 0.14, 0.5, facecolor=SHELL, edgecolor="black", linewidth=0.8))
+    _note(axes, "radius, play, stiffness")
+
+
+def _shaft(axes: Axes, radius: float = 0.3) -> None:
+    axes.add_patch(Rectangle((-1.5, -radius), 3.0, 2 * radius, facecolor=STEEL, edgecolor="black", linewidth=0.8))
+    axes.plot([-1.6, 1.6], [0, 0], color=GREY, linewidth=0.7, linestyle="-.")
+
+
+def _boxes(axes: Axes, colour: str, low: float, high: float, *spans: tuple[float, float]) -> None:
+    """Rings along the axis between two radii, above and below it."""
+    edge = "none" if colour == OIL else "black"
+    for begin, end in spans:
+        for bottom in (low, -high):
+            axes.add_patch(Rectangle((begin, bottom), end - begin, high - low, facecolor=colour, edgecolor=edge,
+                                     linewidth=0.8))  # fmt: skip
+
+
+def _cartridge(axes: Axes) -> None:
+    _shaft(axes)
+    _boxes(axes, OIL, 0.3, 0.42, (-1.1, -0.5), (0.5, 1.1))
+    _boxes(axes, RING, 0.42, 0.68, (-1.1, 1.1))
+    _boxes(axes, OIL, 0.68, 0.82, (-1.1, -0.4), (0.4, 1.1))
+    _boxes(axes, SHELL, 0.82, 1.1, (-1.3, 1.3))
+    _note(axes, "positions, ring, inner, outer")
+
+
+def _spring(axes: Axes, x: float, low: float, high: float) -> None:
+    """A zigzag from one height to another."""
+    y = np.linspace(low, high, 9)
+    axes.plot(x + 0.1 * np.array([0, 0, 1, -1, 1, -1, 1, 0, 0]), y, color="black", linewidth=0.9)
+
+
+def _damper(axes: Axes) -> None:
+    _shaft(axes)
+    _boxes(axes, OIL, 0.3, 0.4, (-0.6, 0.6))
+    _boxes(axes, RING, 0.4, 0.62, (-0.7, 1.1))
+    _boxes(axes, OIL, 0.62, 0.8, (-0.7, 0.7))
+    _boxes(axes, SHELL, 0.8, 1.1, (-1.2, 1.2))
+    for low, high in ((0.62, 0.8), (-0.8, -0.62)):
+        _spring(axes, 0.9, low, high)
+    _note(axes, "film around the shell, spring")
+
+
+def _support(axes: Axes) -> None:
+    _shaft(axes, 0.25)
+    for x in (-0.8, 0.8):
+        _boxes(axes, OIL, 0.25, 0.35, (x - 0.35, x + 0.35))
+        _boxes(axes, RING, 0.35, 0.55, (x - 0.4, x + 0.4))
+        _spring(axes, x, -0.85, -0.55)
+    axes.add_patch(Rectangle((-1.3, -1.0), 2.6, 0.15, facecolor=SHELL, edgecolor="black", linewidth=0.8))
+    for x in (-1.1, 1.1):
+        _spring(axes, x, -1.22, -1.0)
+    axes.plot([-1.4, 1.4], [-1.22, -1.22], color="black", linewidth=1.2)
+    axes.text(0.0, -0.72, "support", ha="center", va="center", fontsize=7.5)
+    axes.text(0.0, 0.9, "ring: mass of the support;\nplate: housing on mounts", ha="center", fontsize=7.5)
+
+
+def _pad(axes: Axes) -> None:
+    axes.add_patch(Rectangle((-1.3, 0.25), 2.6, 0.35, facecolor=STEEL, edgecolor="black", linewidth=0.8))
+    axes.add_patch(Polygon([(-1.2, -0.35), (0.2, 0.05), (1.1, 0.05), (1.1, -0.7), (-1.2, -0.7)], facecolor=SHELL,
+                           edgecolor="black", linewidth=0.8))  # fmt: skip
+    axes.add_patch(Polygon([(-1.2, -0.35), (0.2, 0.05), (1.1, 0.05), (1.1, 0.25), (-1.2, 0.25)], facecolor=OIL))
+    axes.annotate("", (0.5, 0.42), (-0.5, 0.42), arrowprops=ARROW)
+    axes.annotate("", (1.25, 0.05), (1.25, 0.25), arrowprops={**DIMENSION, "mutation_scale": 5})
+    axes.text(1.3, 0.15, "gap", va="center", fontsize=7.5)
+    axes.annotate("", (-1.3, -0.35), (-1.3, 0.05), arrowprops={**DIMENSION, "mutation_scale": 5})
+    axes.text(-1.35, -0.15, "taper", va="center", ha="right", fontsize=7.5, rotation=90)
+    for begin, end, words in ((-1.2, 0.2, "taper_angle"), (0.2, 1.1, "land")):
+        axes.annotate("", (begin, -0.85), (end, -0.85), arrowprops=DIMENSION)
+        axes.text((begin + end) / 2, -1.02, words, ha="center", va="center", fontsize=7.5)
+    _note(axes, "pads, pad_angle, end_play")
+
+
 SKETCHES: dict[str, Callable[[Figure], None]] = {
     "bearing": bearing,
     "cavitation": cavitation,
     "whirl": whirl,
     "ring": ring,
+    "parts": parts,
 }
 
 if __name__ == "__main__":

@@ -187,7 +187,7 @@ def _heat(case: Case, terminal: Terminal) -> dict[str, object]:
             "frb warm-up compiles all that this case needs, once; afterwards frb check shows the temperatures."
         )
         return {}
-    show_heat(terminal, warm, "heat at the top speed, when everything is warm")
+    show_heat(terminal, case, warm, "heat at the top speed, when everything is warm")
     return heat_document(warm)
 
 
@@ -250,7 +250,7 @@ def _about_cost(cost: ExpectedCost, compile_B: float, with_films: bool) -> tuple
     from frbcli.scene.planning.film_choice import Decision
 
     solved = f", {cost.film_solves} film solves" if with_films else ""
-    solves = f"{cost.steps} steps{solved}, on the machine of docs/accuracy.md"
+    solves = f"{cost.steps} steps{solved}, on one core of a server"
     parts = f"{clock(cost.before_s)} before the first step, {clock(cost.after_s)} for the error at the end"
     if cost.second_s:
         parts += f", {clock(cost.second_s)} for the uncertainty of its events"

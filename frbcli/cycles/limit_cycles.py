@@ -124,7 +124,7 @@ class Family(Changing):
 
 def value_range(case: Case, key: str, low: str, high: str) -> tuple[float, float, str]:
     """The ends of a range of a number of the machine, text with one unit, and that unit. Raises InputError."""
-    if fault := machine_fault(key, "--over or --and"):
+    if fault := machine_fault(key, "--parameter or --and"):
         raise InputError(case.name or "case", (fault,))
     (first, unit), (last, other) = _number(key, low), _number(key, high)
     if unit != other or not first < last:

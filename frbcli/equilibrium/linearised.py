@@ -360,7 +360,7 @@ WARM_FILMS = (
     Column("viscosity", "Pa s", "viscosity of its oil", shown=(Shown("mPa*s", ".4g", "mPa s"),)),
     Column("clearance", "m", "clearance", shown=(Shown("gap, um", ".4g", "um"),)),
     Column("power", "W", "power that journal and shell put into the film", shown=(Shown("loss, W", ".4g"),)),
-    Column("flow", "m^3/s", "oil that leaves at the open ends", shown=(Shown("flow, ml/s", ".3g", "ml/s"),)),
+    Column("flow", "m^3/s", "oil that leaves at the open ends", shown=(Shown("flow, l/min", ".3g", "l/min"),)),
 )
 
 # Of a RingTemperature

@@ -199,7 +199,7 @@ class RubbedRings:
 
 
 def rubbed_rings(system: System, bodies: Array, places: Array) -> RubbedRings:
-    """Of a machine at rest at places (films, c); bodies: see ring_torques."""
+    """Asperity forces and torques linearised about rest at places (films, c); bodies: see ring_torques."""
     rings, (count, c) = system.ring_count, places.shape
     torques, by_rate, by_speed = np.zeros((rings, count * c)), np.zeros((rings, count * c)), np.zeros((rings, rings))
     forces, pulls, alone = np.zeros((count, c, rings)), np.zeros(rings), []

@@ -38,7 +38,7 @@ class MeanEndFlow(NamedTuple):
 
 
 def mean_end_flow(film: VolumeFilm, fields: MeanFilm, data: VolumeFilms, i: int) -> MeanEndFlow:
-    """Of film i of `data`, whose fields are tabulated."""
+    """Mean end flow of film i of `data`."""
     section = film.section
     apart = 2.0 * math.pi / (fields.table.shape[1] * max(len(section.holes), 1))
     unit = section.copies * section.radius * section.width

@@ -107,8 +107,8 @@ def stability(
 
 
 def threshold_alone(case: Case) -> Stability:
-    """As `stability`, for who wants the threshold with its error alone: the points have no errors, and if films are on
-    cells, they are fewer, and most of them on the coarsest mesh. Raises InputError."""
+    """Threshold only, without errors at the points, of which finite-volume films have fewer, most on the coarsest mesh.
+    Raises InputError."""
     require(case, RANGE)
     speeds = default_speeds(case)
     check_machine(case, speeds)

@@ -11,10 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frbcli.analysis.resonance import Ridges
-from frbcli.analysis.signals import films, joined
+from frbcli.analysis.signals import films
 from frbcli.case.run import speed_unit_of
 from frbcli.film.cavitation.table import label_of
-from frbcli.plot.signals import MICRO, curve, ends
+from frbcli.plot.run.motion import Line, draw_largest
+from frbcli.plot.signals import MICRO, ends
 from frbcli.plot.style import (
     BLACK,
     BLUE,
@@ -34,8 +35,6 @@ from frbcli.studies.against import AgainstMeasured
 from frbcli.studies.compare import Comparison, Variant
 from frbcli.studies.fit import Fit
 from frbcli.units import display
-
-Line = Any  # a line style of matplotlib: a name, or an offset and lengths of dashes
 
 LINES: tuple[Line, ...] = ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (6, 1.5, 1.5, 1.5)))
 MARKS = {"critical-speed": "o", "self-excited": "D", "onset": "^", "offset": "v", "lock-in": "s", "contact": "X",
@@ -66,11 +65,8 @@ def comparison_figure(comparison: Comparison) -> Figure:
         for row, run in enumerate(runs):
             colour, line = COLOURS[row % len(COLOURS)], LINES[row % len(LINES)]
             for film in films(run.signals):
-                drawn = curve(run, run.signal(joined("eccentricity", film)))
-                above.plot(*drawn, color=colour, linestyle=line, alpha=0.75)
+                draw_largest(above, run, film, colour, line)
             _draw_events(below, run, row, colour, line)
-        above.set_ylim(0.0, 1.0)
-        above.set_ylabel("eccentricity")
         _speed_axis(above, comparison)
         below.set_yticks(range(count), [_name(result.variant, len(models) > 1) for result in comparison.results])
         below.set_ylim(count - 0.5, -0.5)
@@ -191,7 +187,7 @@ def _draw_ridges(panels: Sequence[Axes], drawn: Sequence[Drawn]) -> None:
     above.set_ylabel("synchronous in µm")
     above.set_ylim(bottom=0.0)
     if whirls:
-        whirls[0].set_ylabel("whirl in Hz, dotted: onset")
+        whirls[0].set_ylabel("whirl in Hz\n(dotted: onset)")
         whirls[1].set_ylabel("whirl in µm")
         whirls[1].set_ylim(bottom=0.0)
     for axes in panels[:-1]:

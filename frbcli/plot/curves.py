@@ -193,7 +193,7 @@ def run_tracks(run: Run, name: str) -> tuple[RunTrack, ...]:
     tracks = []
     for rising, part in ((True, slice(0, top + 1)), (False, slice(top, None))):
         if len(over[part]) > 2 and np.ptp(over[part]) > 0.0:
-            label = f"{'run-up' if rising else 'run-down'}, {_ramp(over[part], np.array(times)[part]):.4g} Hz/s"
+            label = f"{'run-up' if rising else 'run-down'}, {_ramp(over[part], np.array(times)[part]):.3g} Hz/s"
             films = {signal[len(ECCENTRICITY) + 1 :]: np.array(values)[part] for signal, values in largest.items()}
             tracks.append(RunTrack(name, label, rising, over[part], films))
     return tuple(tracks)

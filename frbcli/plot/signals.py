@@ -27,6 +27,7 @@ from frbcli.results.store import Run
 
 DRAWN_POINTS = 4000  # more than a picture has columns of pixels
 SHORTEST = 4  # samples of a span; with fewer, all are drawn
+SPANS = 120  # of an envelope: some pixels each
 MICRO = 1e6
 NO_CLEARANCE = "Run the case again; of a measurement give --clearance, or --linear for amplitudes in um."
 RAMP_s = 5e-3  # before and after an event, in which its ramp is taken
@@ -78,6 +79,15 @@ def curve(run: Run, column: EnvelopeColumn, first: int = 0, last: int | None = N
     for start, stop in pieces(first, last):
         line.add(run.read(TIME, start, stop), column[start:stop])
     return line.points()
+
+
+def envelope(run: Run, column: EnvelopeColumn) -> tuple[Array, Array, Array]:
+    """Times (k,), and the lowest and the highest value (k,) of spans that begin there."""
+    times, values = curve(run, column)
+    if len(times) < SHORTEST * SPANS:
+        return times, values, values
+    first = np.unique(np.searchsorted(times, np.linspace(times[0], times[-1], SPANS, endpoint=False)))
+    return times[first], np.minimum.reduceat(values, first), np.maximum.reduceat(values, first)
 
 
 def extremes(column: EnvelopeColumn, first: int, last: int) -> tuple[float, float]:

@@ -33,7 +33,7 @@ from frbcli.studies.sweep.scatter import Scatter
 from frbcli.studies.sweep.sweep import Sweep, SweepPoint
 
 KINDS = {"runup": ("onset", "onset of the whirl"), "stability": ("threshold", "threshold of stability")}
-MOST_TICKS = 12
+MOST_TICKS, MOST_DIGITS = 12, 6
 MOST_NUMBERS = 100  # cells of a map that still have room for their value
 DARK = 0.5  # share of the colour range below which white letters are read best
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
@@ -56,7 +56,14 @@ class _Scale:
 
     @property
     def ticks(self) -> list[str]:
-        return list(self.texts) if self.unit is None else [f"{_number(text):.6g}" for text in self.texts]
+        """As written, or if that is long, with as few digits as keep all values apart."""
+        if self.unit is None:
+            return list(self.texts)
+        counts = range(3, MOST_DIGITS + 1)
+        *shorter, full = ([f"{_number(text):.{digits}g}" for text in self.texts] for digits in counts)
+        if max(map(len, full)) < MOST_DIGITS:
+            return full
+        return next((ticks for ticks in shorter if len(set(ticks)) == len(ticks)), full)
 
 
 def can_draw(sweep: Sweep) -> bool:

@@ -150,8 +150,8 @@ def waterfall_figure(
                 mesh = draw_levels(axes, run, signal, part, over, log, scale)
                 number_events(axes, run, part, over)
                 _draw_other_axis(axes, part, over)
-        _list_events(figure, run, unit or speed_unit_of(run))
-        if not cascade:
+        if not cascade:  # its curves have no room for the numbers of events
+            _list_events(figure, run, unit or speed_unit_of(run))
             bar = figure.colorbar(mesh, ax=list(panels), pad=0.02, extend="both")
             bar.set_label("amplitude in µm" if scale.linear else level_label(run, signal))
             bar.outline.set_visible(False)
@@ -316,9 +316,7 @@ def draw_levels(
     return mesh
 
 
-def orders(
-    run: Run, signal: str, found: Spectrogram, chosen: Sequence[float] | None = None
-) -> list[tuple[str, Array]]:
+def orders(run: Run, signal: str, found: Spectrogram, chosen: Sequence[float] | None = None) -> list[tuple[str, Array]]:
     """The lines of 1X and of harmonic loads, and the frequencies of free whirls; or lines of chosen orders."""
     if chosen is not None:
         return [(f"{order:g}X", order * found.speed_Hz) for order in chosen]

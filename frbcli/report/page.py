@@ -27,11 +27,12 @@ from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case_text
 from frbcli.case.run import speed_unit_of
 from frbcli.errors import FrbError, InputError, input_error, printable
+from frbcli.plot import style as plot_style
 from frbcli.plot.run.motion import displacement_figure, eccentricity_figure
 from frbcli.plot.run.quantities import SUBJECTS, quantity_figure
 from frbcli.plot.run.summary import FEWEST_SAMPLES, ring_speed_figure, speeds_figure, times_of_speeds
 from frbcli.plot.signals import bearing_of, clearance, ends, events, heading
-from frbcli.plot.style import Picture, narrowed, picture
+from frbcli.plot.style import Picture, narrowed
 from frbcli.plot.waterfall import (
     Levels,
     LEVELS_dB,
@@ -283,7 +284,7 @@ def report(
         script=script,
         cards=_cards(run, shown, unit),
         events=[_event(number, event, unit) for number, event in enumerate(shown, start=1)],
-        certainty=about_certainty(shown, run.cost, unit),
+        certainty=about_certainty(run, shown, unit),
         speed_unit=unit.head,
         waterfall=None if waterfall is None else Waterfall(Markup(waterfall.svg), Markup(waterfall.data)),
         waterfall_note="" if spectra is None else _note(run, signal, reading(spectra)),
@@ -400,7 +401,7 @@ def _courses(run: Run) -> list[ShownRun]:
 
 def _shown(figure: Picture, caption: str) -> ShownRun:
     figure.suptitle("")
-    data = base64.b64encode(picture(figure, ".svg", own_letters=True)).decode()
+    data = base64.b64encode(plot_style.picture(figure, ".svg", own_letters=True)).decode()
     return ShownRun(f"data:image/svg+xml;base64,{data}", caption)
 
 

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from frbcli.analysis.events import find_events
+from frbcli.analysis.events import find_events, resolution
 from frbcli.analysis.uncertainty import NEAR, slow_uncertainties, with_uncertainties
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
@@ -55,6 +55,7 @@ Observer = Callable[[Progress], None]
 # Errors differ from the shipped cases, near openings (grooves, slots, pockets, feed holes) also by their order; most
 # of all the errors of rings at rest around a journal that turns.
 SAFETY, SAFETY_OF_OPENINGS, SAFETY_OF_RINGS, SAFETY_OF_RINGS_AT_REST = 1.5, 2.0, 2.5, 4.0
+COARSE = 1e-3  # step of the search for an event, over the speed, from which it is shown
 QUARTER = 0.25  # of the steps of a run without films, in the run that its error is computed from
 LONG_s = 20.0  # CPU time of a run without films above which its error is the sum of all local errors, which is larger
 LEAST = 0.5  # of the error that these cells were expected to make, which is 1.3 to 7 times the true one
@@ -252,11 +253,10 @@ def account(run: Run) -> list[tuple[str, str, str]]:
     ]
 
 
-def about_certainty(
-    events: Sequence[Mapping[str, Any]], cost: Mapping[str, Any], unit: SpeedUnit = HERTZ
-) -> list[str]:
-    """Sentences on the uncertainties of the events of a run: which events are not certain and why, or what it would
-    cost to know. events: with the names of their whirls; unit: of rotor speeds."""
+def about_certainty(run: Run, events: Sequence[Mapping[str, Any]], unit: SpeedUnit = HERTZ) -> list[str]:
+    """Sentences on the uncertainties of the events of a run: which events are not certain and why, or how finely they
+    are sought and what it would cost to know. events: with the names of their whirls; unit: of rotor speeds."""
+    cost = run.cost
     if SECOND_RUN in cost and any(event.get("certain") is None for event in events):
         return ["No uncertainties of the events: the machine does not begin to run on fewer cells."]
     if SECOND_RUN in cost:
@@ -267,7 +267,11 @@ def about_certainty(
         ]
     if not events or SECOND_RUN_PREDICTED not in cost:
         return []
-    return [f"No uncertainties of the events: they take about {clock(cost[SECOND_RUN_PREDICTED])} with --uncertainty."]
+    steps = [(resolution(run, event)[0], abs(event["speed_Hz"])) for event in events]
+    coarse = max((step for step, speed in steps if step > COARSE * speed), default=0.0)
+    search = f" Events are sought in steps of up to {unit.words(coarse, 1)}." if coarse else ""
+    takes = f"they take about {clock(cost[SECOND_RUN_PREDICTED])} with --uncertainty"
+    return [f"No uncertainties of the events: {takes}.{search}"]
 
 
 def _of(run: Run) -> str:

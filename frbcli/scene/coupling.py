@@ -61,7 +61,7 @@ MONOLITHIC = Coupling("monolithic", "rotor and film are one equation in every st
 
 FULL = Coupling(
     "dynamic-static",
-    "the film has no state and is solved with the rotor in every stage",
+    "the film depends on the motion alone and is solved with the rotor in every stage",
     rules=(WITHOUT_STATE,),
 )
 

@@ -1,4 +1,4 @@
-"""Heat in the time loop, compiled. Two kinds ride in it:
+"""Heat in the time loop, compiled. There are two kinds:
 
 - NoHeat: every film keeps its viscosity and clearance, and nothing is computed;
 - LumpedHeat: after each accepted step films, rings and walls take up what the films have dissipated in it. Each stage

@@ -1,4 +1,4 @@
-"""Inputs over time in the time loop, compiled. Two kinds ride in it:
+"""Inputs over time in the time loop, compiled. There are two kinds:
 
 - an empty tuple: a machine whose inputs stay as they are, for which nothing is computed;
 - Inputs: each step has the pressures in its middle and the temperatures at its end.

@@ -48,7 +48,7 @@ def test_the_command_goes_over_a_number_of_the_case(capsys: pytest.CaptureFixtur
     (tmp_path / "rigid.toml").write_text(rigid(4.538, 2.4, 2.9).source_text)
     words = ["limit-cycles", str(tmp_path / "rigid.toml"), "--json", "--csv"]
     words += [str(tmp_path / "over.csv"), "-o", str(tmp_path / "over.png")]
-    words += ["--speed", f"{2.7 * UNIT_Hz} Hz", "--over"]
+    words += ["--speed", f"{2.7 * UNIT_Hz} Hz", "--parameter"]
     assert run([*words, "bearing.clearance=48..60 um"]) == 0
     document = json.loads(capsys.readouterr().out)
     assert (document["over"], document["unit"]) == ("bearing.clearance", "um")
@@ -65,7 +65,7 @@ def test_the_command_goes_over_a_number_of_the_case(capsys: pytest.CaptureFixtur
 def test_a_map_without_a_point_says_so(capsys: pytest.CaptureFixture[str]) -> None:
     """Below its threshold of 178 Hz the rotor whirls at no clearance near its own."""
     words = ["limit-cycles", "jeffcott", "--set", "film.theory=short", "--speed", "120 Hz", "--no-picture"]
-    words += ["--over", "bearing.clearance=34..36 um", "--points", "2"]
+    words += ["--parameter", "bearing.clearance=34..36 um", "--points", "2"]
     assert run([*words, "--and", "oil.viscosity=12..13 mPa*s"]) == 0
     assert "no whirl begins or ends between these values" in " ".join(capsys.readouterr().out.split())
 
@@ -89,7 +89,7 @@ def test_whirls_with_unbalance_are_told(capsys: pytest.CaptureFixture[str], tmp_
     assert "Locked in with unbalance" in told
     assert "Omega/2" in told
     assert max(map(len, told.splitlines())) <= 80
-    over = ["--over", "bearing.clearance=30..45 um"]
+    over = ["--parameter", "bearing.clearance=30..45 um"]
     assert run([*words, *over]) == 2
     assert "--with-unbalance is of the diagram" in capsys.readouterr().err
     assert run([*words, "--set", "rotor.unbalance=0 g*mm"]) == 2

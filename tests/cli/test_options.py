@@ -43,6 +43,13 @@ def test_an_option_means_one_thing(option: str) -> None:
     assert len({(type(each.type), each.metavar, tuple(each.opts)) for each in found.values()}) == 1
 
 
+def test_an_axis_is_a_quantity_in_all_commands() -> None:
+    given = {name: options(name).get("--over") for name in COMMANDS}
+    axes = {name: option.type.to_info_dict()["choices"] for name, option in given.items() if option is not None}
+    assert set(axes) == {"waterfall", "plot", "bearing"}
+    assert set().union(*axes.values()) == {"time", "speed", "eccentricity"}
+
+
 def test_choices_are_shown_and_defaults_have_one_style() -> None:
     for name in COMMANDS:
         for opt, param in options(name).items():
@@ -57,7 +64,7 @@ def test_choices_are_shown_and_defaults_have_one_style() -> None:
 
 @pytest.mark.parametrize("words", [
     ["waterfall", "--foo"], ["nothing"], ["plot"], ["runup", "jeffcott", "-o", "run.txt"], ["check", "nothing"],
-    ["limit-cycles", "jeffcott", "--over", "speed"],
+    ["limit-cycles", "jeffcott", "--parameter", "speed"],
 ])  # fmt: skip
 def test_errors_have_one_form(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     """Subject, then a line for each fault: what it is of, what is wrong, what to do."""

@@ -162,7 +162,7 @@ def test_a_map_over_two_keys_meets_diagrams_over_the_speed(kind: str) -> None:
 
 def test_the_command_draws_maps_over_two_keys(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]
     (tmp_path / "rigid.toml").write_text(rigid(1.313, 2.4, 2.9).source_text)
-    over = ["limit-cycles", str(tmp_path / "rigid.toml"), "--over", "bearing.clearance=48..52 um"]
+    over = ["limit-cycles", str(tmp_path / "rigid.toml"), "--parameter", "bearing.clearance=48..52 um"]
     over += ["--points", "2", "--speed", f"{2.65 * UNIT_Hz} Hz", "--json", "-o", str(tmp_path / "map.png")]
     words = [*over, "--and", "bearing.width=9..11 mm", "--csv", str(tmp_path / "map.csv")]
     assert run(words) == 0

@@ -7,7 +7,7 @@ import re
 import shlex
 import shutil
 import signal
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -215,16 +215,29 @@ OF_THE_MACHINE = ("CPU time", "CPU s", "with --uncertainty", "predicted", "film 
 CLOSE = 0.03  # of numbers that are shown: they are of another processor
 
 
-def shown_outputs() -> Iterator[tuple[str, str, list[str], str]]:
-    """Each block that shows a command with its output: page, command, lines, and the case that the page has so far."""
+def shown_outputs() -> Iterator[tuple[str, str, list[str], list[float], str]]:
+    """Each block that shows a command with its output: page, command, lines, the speeds that the sentences up to the
+    next one quote, and the case that the page has so far."""
     for page in sorted((ROOT / "docs").glob("*.md")):
         case = ""
-        for kind, block in re.findall(r"```([a-z]*)\n(.*?)```", page.read_text(encoding="utf-8"), flags=re.DOTALL):
+        blocks = re.split(r"```([a-z]*)\n(.*?)```", page.read_text(encoding="utf-8"), flags=re.DOTALL)[1:]
+        for place, (kind, block) in enumerate(zip(blocks[::3], blocks[1::3], strict=True)):
             case += f"{block}\n" if kind == "toml" and page.name == "tutorial.md" else ""
             first, _, rest = block.partition("\n")
             if first.startswith("$ frb "):
                 lines = [line.rstrip() for line in rest.splitlines() if line.strip(" ─") not in ("", "...")]
-                yield page.name, first[2:], lines, case
+                yield page.name, first[2:], lines, quoted(blocks[3 * place + 1 :]), case
+
+
+def quoted(blocks: Sequence[str]) -> list[float]:
+    """The speeds of the sentences behind a block of a page, up to the next block that shows a command. blocks: words of
+    a block, then sentences and the kind of the next one in turn."""
+    sentences = ""
+    for words, behind in zip(blocks[::3], blocks[1::3], strict=True):
+        if sentences and words.startswith("$ frb "):
+            break
+        sentences += f"{behind} "
+    return [float(number) for number in re.findall(r"(\d+(?:\.\d+)?) (?:Hz|rpm)\b", sentences)]
 
 
 def alike(shown: str, printed: str) -> bool:
@@ -246,15 +259,44 @@ def test_lines_of_other_numbers_or_words_are_not_alike() -> None:
     assert not alike("error 1.1e-03", "error 1.1e-02")
 
 
+def unknown_numbers(quoted_numbers: Sequence[float], printed: str) -> list[float]:
+    """Those that are not close to any number of an output."""
+    numbers = [float(number) for number in NUMBER.findall(printed)]
+    return [each for each in quoted_numbers if all(abs(each - number) > CLOSE * each for number in numbers)]
+
+
+# Sentences that quote what a command prints, and the command
+QUOTES = (
+    ("elements.md", "whirls from 114.9 Hz on", "stability seal"),
+    ("limit-cycles.md", "The Hopf point at 177.19 Hz", "stability jeffcott"),
+    ("limit-cycles.md", "the fold at 170.81 Hz", "limit-cycles jeffcott"),
+    ("heat.md", "the inner film has 142 degC, the outer one 93 degC, and the oil carries 612",
+     "stability floating-ring-heat --speed '900 Hz'"),
+)  # fmt: skip
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize(("page", "words", "line"), QUOTES)
+def test_sentences_quote_what_commands_print(
+    page: str, words: str, line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:  # fmt: skip
+    assert words in " ".join((ROOT / "docs" / page).read_text(encoding="utf-8").split())
+    monkeypatch.chdir(tmp_path)
+    assert run([*shlex.split(line), "--no-picture"]) == 0
+    assert unknown_numbers([float(number) for number in NUMBER.findall(words)], capsys.readouterr().out) == []
+
+
 @pytest.mark.nightly  # the time loop of the tutorial is no other test's
 def test_pages_show_what_their_commands_print(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Every line and number of the outputs in the pages, but for those of the machine that computed them."""
+    """Every line and number of the outputs in the pages, but for those of the machine that computed them; and of the
+    sentences behind them every speed."""
     monkeypatch.chdir(tmp_path)
     outputs = list(shown_outputs())
     assert len(outputs) >= 3
-    for page, line, shown, case in outputs:
+    for page, line, shown, speeds, case in outputs:
         Path("turbo.toml").write_text(case, encoding="utf-8")
         run([*shlex.split(line)[1:]])
         said = capsys.readouterr()
@@ -262,3 +304,4 @@ def test_pages_show_what_their_commands_print(
         wanted = [each for each in shown if not any(word in each for word in OF_THE_MACHINE)]
         missing = [each for each in wanted if not any(alike(each, other) for other in printed)]
         assert missing == [], (page, line)
+        assert unknown_numbers(speeds, " ".join(printed)) == [], (page, line)

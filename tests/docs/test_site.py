@@ -9,13 +9,15 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
+import picture_texts
 import pytest
 from pages.tutorial_notebook import case_text, cells
 from paths import DOCS
 
 import frbcli
-from frbcli.cli.main import COMMANDS
+from frbcli.cli.main import COMMANDS, run
 
 
 def test_the_case_of_the_tutorial_is_whole_from_its_bearings_on() -> None:
@@ -107,3 +109,25 @@ def test_the_site_builds_without_warnings(tmp_path: Path) -> None:
     words = (tmp_path / "site" / "index.html").read_text(encoding="utf-8")
     loaded = re.findall(r'<(?:script|img)[^>]* src="([^"]+)"|<link[^>]* rel="stylesheet"[^>]* href="([^"]+)"', words)
     assert [link for pair in loaded for link in pair if link.startswith(("http:", "https:", "//"))] == []
+
+
+# Pictures that the gallery does not show
+FURTHER = (
+    ["bearing", "ball-bearing", "--load", "60 N", "--speed", "1000 Hz", "--speed", "2500 Hz"],
+    ["waterfall", "run.h5", "--order", "1,0.5", "-o", "orders.png"],
+    ["compare", "run.h5", "--measured", "run.h5"],
+    ["plot", "jeffcott", "--what", "law", "-o", "law.png"],
+    ["stability", "turbocharger-car", "--modes", "5e6 N/m", "-o", "modes.png"],
+    ["report", "run.h5"],
+)
+
+
+@pytest.mark.nightly
+def test_texts_of_the_gallery_cover_no_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """conftest.py looks at each picture of a line: those of the site and further ones."""
+    monkeypatch.chdir(tmp_path)
+    site: Any = builder()
+    shown = [words for words, picture in site.SHOWN.values() if picture and words != site.RUN]
+    for words in (site.RUN, *shown, *(words for words, *_ in site.MORE), *FURTHER):
+        assert run(words) == 0, words
+        assert picture_texts.seen == [], words

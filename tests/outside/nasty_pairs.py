@@ -73,7 +73,7 @@ COMMANDS: tuple[tuple[str, ...], ...] = (
     ("response", "CASE", "-o", "OUT.png", "--csv", "OUT.csv"),
     ("response", "CASE", "--map", "-o", "OUT.png"),
     ("limit-cycles", "CASE", "-o", "OUT.png"),
-    ("limit-cycles", "CASE", "--over", "bearing.clearance=30..40 um", "--no-picture"),
+    ("limit-cycles", "CASE", "--parameter", "bearing.clearance=30..40 um", "--no-picture"),
     ("accuracy", "CASE", "--until", "20 ms", "-o", "OUT.png"),
     ("sweep", "CASE", "--set", "rotor.unbalance=1 g*mm,2 g*mm", "--stability", "--jobs", "1", "-o", "OUT-sweep"),
     ("plot", "CASE", "--what", "law", "-o", "OUT.png"),

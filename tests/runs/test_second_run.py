@@ -55,7 +55,7 @@ def test_a_run_that_has_ended_gets_them_later(run: Run, case: Case, tmp_path: Pa
     path = tmp_path / "later.h5"
     first = runup(case, path)
     assert all(event["certain"] is None for event in first.events)
-    assert "with --uncertainty" in about_certainty(first.events, first.cost)[0]
+    assert "with --uncertainty" in about_certainty(first, first.events)[0]
     later = runup(case, path, uncertainty=True)
     assert later.events == run.events
     assert later.cost["cpu_s"] == first.cost["cpu_s"]
@@ -139,4 +139,4 @@ def test_a_second_run_that_does_not_begin_leaves_the_events(
     found = runup(case, tmp_path / "run.h5", uncertainty=True)
     assert all(event["certain"] is None for event in found.events)
     assert second_run.SECOND_RUN in found.cost
-    assert "does not begin" in about_certainty(found.events, found.cost)[0]
+    assert "does not begin" in about_certainty(found, found.events)[0]

@@ -3,7 +3,6 @@ film the sheet of these."""
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -11,6 +10,7 @@ import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import CASE_FILE, forced, here
+from frbcli.cli.machines.static_tables import show_machine
 from frbcli.cli.options import LOAD_OPTION, REST_OPTION, Command, film_option, speeds_option
 from frbcli.cli.progress import OutputOptions, computing, display, outputs_options
 from frbcli.errors import NotConverged
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     from frbcli.linear.sheets.film_state import FilmState
 
 Item = TypeVar("Item")
-MACHINE = ("film", "eps", "h, um", "p, bar", "film, degC", "loss, W", "flow, l/min", "err. of K, C")
-LITRES_PER_MINUTE, ZERO_CELSIUS = 6e4, 273.15  # of a m^3/s; K
 FEW_POINTS, SCREEN_ROWS = 2, 8  # points that are always shown in full; rows of all films on one screen
 EXPLANATION = (
     "{}. Errors of stiffness and damping are over their largest entry. The rise is with {:.4g} kg/m^3 and "
@@ -200,31 +198,11 @@ def _show_machine(terminal: Terminal, sheet: BearingSheet, full: bool) -> None:
     """Of several films: a table for each speed with a line for each film and the sum; not full: at few speeds."""
     speeds = list(dict.fromkeys(state.speed_Hz for state in sheet.points))
     shown = speeds if full else _spread(speeds, max(FEW_POINTS, SCREEN_ROWS // len(sheet.films)))
-    bearings = 2 if sheet.case.rotor is not None and sheet.case.rotor.symmetric else 1
     for speed in shown:
-        states = [state for state in sheet.points if state.speed_Hz == speed]
-        rows = [_machine_row(state) for state in states]
-        loss, flow = (bearings * sum(value for value in values if not math.isnan(value))
-                      for values in ([s.power for s in states], [s.side_flow for s in states]))  # fmt: skip
-        whole = "machine, both bearings" if bearings > 1 else "machine"
-        rows.append((whole, *[""] * 4, f"{loss:.4g}", f"{LITRES_PER_MINUTE * flow:.3g}", ""))
-        title = f"{sheet.case.heading} at {terminal.speeds.words(speed)}"
-        terminal.table(title, MACHINE, rows)
-        rings = {state.film.rpartition("_")[0] or "ring": state.shell_speed_Hz / speed for state in states
-                 if speed and state.shell_speed_Hz and state.film.endswith("inner")}  # fmt: skip
-        if rings:
-            ratios = ", ".join(f"{name.replace('_', ' ')} {ratio:.3f}" for name, ratio in rings.items())
-            terminal.sentence(f"Ring speed over rotor speed: {ratios}.")
+        show_machine(terminal, sheet.case, [state for state in sheet.points if state.speed_Hz == speed])
     if len(shown) < len(speeds):
         terminal.sentence(f"{len(shown)} of {len(speeds)} speeds; --all shows all, with stiffness K and damping C.")
-    terminal.sentence("h: smallest film thickness; p: largest absolute pressure. --film FILM shows one film in full.")
-
-
-def _machine_row(state: FilmState) -> tuple[str, ...]:
-    warm = "-" if math.isnan(state.temperature) else f"{state.temperature - ZERO_CELSIUS:.1f}"
-    numbers = (f"{state.eccentricity:.3f}", f"{1e6 * state.film_thickness_min:.3g}", f"{1e-5 * state.p_max:.3g}", warm,
-               f"{state.power:.4g}", f"{LITRES_PER_MINUTE * state.side_flow:.3g}", f"{state.error:.0e}")  # fmt: skip
-    return (state.film.replace("_", " "), *("-" if number == "nan" else number for number in numbers))
+    terminal.sentence("--film FILM shows one film in full.")
 
 
 def _spread(states: Sequence[Item], rows: int) -> list[Item]:
@@ -275,4 +253,3 @@ def _show_balls(terminal: Terminal, sheet: BallSheet) -> None:
             terminal.show(title, table_of(BALL_SHEET, states), table)
     terminal.sentence(f"{legend(BALL_SHEET, BALLS)}. All per bearing, with one ball in the line of the load.")
     _show_problems(terminal, sheet.points)
-

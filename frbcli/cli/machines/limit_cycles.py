@@ -29,10 +29,10 @@ KINDS = {"hopf": "Hopf points", "fold": "folds"}
 @click.command(cls=Command)
 @case_argument
 @speeds_option("those in the diagram; at given ones the cycles have their orbits")
-@click.option("--over", type=KEY_RANGE, metavar="KEY=LOW..HIGH", show_default="the speed of CASE",
-              help="Horizontal axis: a number of CASE, e.g. bearing.clearance='30..45 um', at --speed.")  # fmt: skip
+@click.option("--parameter", "over", type=KEY_RANGE, metavar="KEY=LOW..HIGH", show_default="the speed of CASE",
+              help="Parameter instead: a number of CASE, e.g. bearing.clearance='30..45 um', at --speed.")  # fmt: skip
 @click.option("--and", "second", type=KEY_RANGE, metavar="KEY=LOW..HIGH",
-              help="Draw a map: curves of Hopf points and folds over --over and this number.")  # fmt: skip
+              help="Draw a map: curves of Hopf points and folds over --parameter and this one.")  # fmt: skip
 @click.option("--points", type=click.IntRange(2, 500), metavar="N", default=3, show_default=True,
               help="Number of values of --and at which curves are sought.")  # fmt: skip
 @click.option("--with-unbalance", is_flag=True,

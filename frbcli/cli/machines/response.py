@@ -12,7 +12,13 @@ import click
 from frbcli.arrays import Array
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import INPUT, here
-from frbcli.cli.machines.static_tables import reduction_document, show_coefficient_error, show_reduction
+from frbcli.cli.machines.static_tables import (
+    machine_document,
+    reduction_document,
+    show_coefficient_error,
+    show_heat,
+    show_reduction,
+)
 from frbcli.cli.options import OPERATING_OPTION, Command, GradeOption, speeds_option
 from frbcli.cli.progress import OutputOptions, computing, outputs_options, picture_of
 from frbcli.errors import Fault, InputError
@@ -87,6 +93,7 @@ def command(
     tracks = () if run is None else _tracks(run, motion.points, str(run_file))
     reduced = own_reduction(case, motion.resting)
     _show(terminal, motion, reduced, bool(speeds))
+    machine = machine_document(terminal, case, speeds[-1]) if speeds else {}
     limits = None if operating is None else vibration_limits(motion, operating)
     quality = None if grade is None else balance_quality(case, grade, operating[1] if operating else None)
     if limits is not None:
@@ -105,6 +112,7 @@ def command(
             "films": spread_table(RESPONSE_FILMS, motion).documents(),
             "coefficients": documents(RESPONSE_COEFFICIENTS, films),
             "reduction": reduction_document(reduced),
+            **machine,
             "critical_speeds_Hz": motion.critical_speeds_Hz,
             "critical_speeds": documents(PEAKS, motion.critical_speeds),
             **({} if limits is None else {"limits": limits_document(limits)}),
@@ -177,6 +185,9 @@ def _show(terminal: Terminal, motion: Response, reduced: Reduction | None, every
     if any(peak.amplitude is None for peak in motion.critical_speeds):
         terminal.sentence("Without an amplitude: the mode is not damped, and nothing bounds the peak.")
     show_coefficient_error(terminal, motion.resting)
+    for point in motion.resting[-1:]:
+        if point.warm is not None:
+            show_heat(terminal, motion.case, point.warm, f"heat at {unit.words(point.speed_Hz)}")
     largest = motion.amplitude.max(axis=0)
     known = (largest > 0.0) & np.isfinite(motion.amplitude_error).all(axis=0)
     if known.any():

@@ -14,6 +14,7 @@ from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import here
 from frbcli.cli.machines.static_tables import (
     heat_document,
+    machine_document,
     reduction_document,
     show_coefficient_error,
     show_collar,
@@ -93,6 +94,7 @@ def command(
             kind = threshold_kind(case, analysis.threshold.speed_Hz)
     reduced = own_reduction(case, analysis.points)
     _show(terminal, analysis, kind, reduced, bool(speeds))
+    machine = machine_document(terminal, case, speeds[-1]) if speeds else {}
     written = places.write(terminal, analysis, "Campbell diagram")
     natural = [natural_modes(case, springs, [at]) for springs, at in _springs(analysis)]
     for modes in natural:
@@ -112,6 +114,7 @@ def command(
             "threshold_kind": None if kind is None else {"criticality": kind.criticality, "fold_Hz": kind.fold_Hz},
             "note": analysis.note,
             "reduction": reduction_document(reduced),
+            **machine,
             **written,
         }
         | ({"natural_frequencies": [modes_document(modes) for modes in natural]} if natural else {})
@@ -132,7 +135,7 @@ def _show(
     show_collar(terminal, analysis)
     warmest = analysis.points[-1]
     if warmest.warm is not None:
-        show_heat(terminal, warmest.warm, f"heat at {terminal.speeds.words(warmest.speed_Hz)}")
+        show_heat(terminal, analysis.case, warmest.warm, f"heat at {terminal.speeds.words(warmest.speed_Hz)}")
     if kind is not None:
         terminal.sentence(_character(kind, terminal.speeds))
     for film in unfed_films(analysis.case):

@@ -1,6 +1,6 @@
 """Tables of static results. The table of `frb stability` in 80 columns: static equilibria and, for each speed, the
-least damped modes; the error of the coefficients that static results are made of; and the heat of a machine at a speed,
-also as part of a JSON document.
+least damped modes; the error of the coefficients that static results are made of; and losses, flows and heat of a
+machine at a speed, also as part of a JSON document.
 
 All growing modes are listed, then the least damped ones.
 """
@@ -8,6 +8,7 @@ All growing modes are listed, then the least damped ones.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from frbcli.columns import heads, table_of
@@ -16,13 +17,18 @@ from frbcli.linear.columns import AXIAL, FILM, MODES, STABILITY
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from frbcli.case.schema import Case
     from frbcli.cli.common import Terminal
     from frbcli.equilibrium.static_machine import FilmTemperature, WarmMachine
+    from frbcli.linear.sheets.film_state import FilmState
     from frbcli.linear.stability import Stability
     from frbcli.linear.stability_point import StabilityPoint
     from frbcli.rotor.reduction import Reduction
     from frbcli.thermal.model import SteadyHeat
 
+WARMTH = "film, degC"
+MACHINE = ("film", "eps", "h, um", "p, bar", WARMTH, "loss, W", "flow, l/min", "err. of K, C")
+LITRES_PER_MINUTE, ZERO_CELSIUS = 6e4, 273.15  # of a m^3/s; K
 MOST_SPEEDS, MOST_LINES = 20, 40  # of the table; JSON and the picture have every speed
 IN_LINE = 2  # in the one line of a single film
 NONE = "none"  # no static equilibrium, or no coefficients there
@@ -137,15 +143,80 @@ def heat_document(warm: WarmMachine) -> dict[str, object]:
     return {"films": films, "rings": rings, **document(HEAT_BALANCE, warm.steady)}
 
 
-def show_heat(terminal: Terminal, warm: WarmMachine, title: str) -> None:
+def show_heat(terminal: Terminal, case: Case, warm: WarmMachine, title: str) -> None:
     """The films and rings of a warm machine, and where its heat goes."""
     from frbcli.columns import table_of
     from frbcli.equilibrium.linearised import WARM_RINGS
 
-    _show_films(terminal, warm.films, title)
+    _show_films(terminal, warm.films, title, "bearing" if _bearings(case) > 1 else "machine")
     if warm.rings:
         terminal.show("rings", table_of(WARM_RINGS, warm.rings))
     _show_balance(terminal, warm.steady)
+
+
+def show_machine(terminal: Terminal, case: Case, states: Sequence[FilmState]) -> None:
+    """The films of a machine at one speed, a line each, their losses and flows in all, and the speeds of its rings."""
+    totals = Totals.of(case, states)
+    rows = [_machine_row(state) for state in states]
+    whole = "both bearings" if totals.bearings > 1 else "machine"
+    rows.append((whole, *[""] * 4, f"{totals.power:.4g}", f"{LITRES_PER_MINUTE * totals.flow:.3g}", ""))
+    kept = [column for column, head in enumerate(MACHINE) if head != WARMTH or case.heat is not None]
+    rows = [tuple(row[column] for column in kept) for row in rows]
+    heading = f"{case.heading} at {terminal.speeds.words(totals.speed_Hz)}"
+    terminal.table(heading, [MACHINE[column] for column in kept], rows)
+    ratios = [f"{name.replace('_', ' ')} {ratio:.3f}" for name, ratio in totals.rings.items()]
+    rings = f"; ring speed over rotor speed: {', '.join(ratios)}" if ratios else ""
+    terminal.sentence(f"h: smallest film thickness; p: largest absolute pressure{rings}.")
+
+
+def _machine_row(state: FilmState) -> tuple[str, ...]:
+    warm = "-" if math.isnan(state.temperature) else f"{state.temperature - ZERO_CELSIUS:.1f}"
+    numbers = (f"{state.eccentricity:.3f}", f"{1e6 * state.film_thickness_min:.3g}", f"{1e-5 * state.p_max:.3g}", warm,
+               f"{state.power:.4g}", f"{LITRES_PER_MINUTE * state.side_flow:.3g}", f"{state.error:.0e}")  # fmt: skip
+    return (state.film.replace("_", " ") or "bearing", *("-" if number == "nan" else number for number in numbers))
+
+
+@dataclass(frozen=True)
+class Totals:
+    """A whole machine at a speed in Hz: power in W and flow in m^3/s of its bearings, rings: their speeds over the
+    rotor's, by bearing; bearings: 2 where the films are of one of two equal bearings."""
+
+    speed_Hz: float
+    power: float
+    flow: float
+    rings: dict[str, float]
+    bearings: int
+
+    @classmethod
+    def of(cls, case: Case, states: Sequence[FilmState]) -> Totals:
+        """Of the states of all films at one speed; unknown ones count as nothing."""
+        bearings, speed = _bearings(case), states[0].speed_Hz
+        power, flow = (bearings * sum(value for value in values if not math.isnan(value))
+                       for values in ([s.power for s in states], [s.side_flow for s in states]))  # fmt: skip
+        rings = {state.film.rpartition("_")[0] or "ring": state.shell_speed_Hz / speed for state in states
+                 if speed and state.shell_speed_Hz and state.film.endswith("inner")}  # fmt: skip
+        return cls(speed, power, flow, rings, bearings)
+
+
+def _bearings(case: Case) -> int:
+    """Number of equal bearings, of which the films of a case are one."""
+    return 2 if case.given_rotor is not None and case.rotor.symmetric else 1
+
+
+def machine_document(terminal: Terminal, case: Case, speed_Hz: float) -> dict[str, object]:
+    """Losses, flows and ring speeds of a machine at a speed, in JSON, which are shown, too; empty where they are not
+    supported, and with heat, whose own table has them."""
+    from frbcli.linear.sheets.bearing import bearing_sheet
+    from frbcli.scene.gate.gate import faults
+    from frbcli.scene.gate.rule import BEARING
+
+    if speed_Hz == 0.0 or case.heat is not None or faults(case, BEARING):
+        return {}
+    sheet = bearing_sheet(case, [speed_Hz])
+    show_machine(terminal, case, sheet.points)
+    totals = Totals.of(case, sheet.points)
+    whole = {"power_W": totals.power, "side_flow_m3_s": totals.flow, "ring_speed_ratios": totals.rings}
+    return {"machine": {"speed_Hz": speed_Hz, **whole, "films": sheet.table().documents()}}
 
 
 def film_document(steady: SteadyHeat) -> dict[str, object]:
@@ -165,15 +236,15 @@ def show_film(terminal: Terminal, steady: SteadyHeat, title: str) -> None:
     _show_balance(terminal, steady)
 
 
-def _show_films(terminal: Terminal, films: Sequence[FilmTemperature], title: str) -> None:
+def _show_films(terminal: Terminal, films: Sequence[FilmTemperature], title: str, whole: str = "") -> None:
     from frbcli.columns import table_of
     from frbcli.equilibrium.linearised import WARM_FILMS
 
     table = table_of(WARM_FILMS, films)
     rows = table.cells()
     if len(films) > 1:  # loss and flow
-        total = f"{sum(film.power for film in films):.4g}", f"{1e6 * sum(film.flow for film in films):.3g}"
-        rows.append(("all of them", *[""] * (len(rows[0]) - 3), *total))
+        power, flow = sum(film.power for film in films), sum(film.flow for film in films)
+        rows.append((whole, *[""] * (len(rows[0]) - 3), f"{power:.4g}", f"{LITRES_PER_MINUTE * flow:.3g}"))
     terminal.table(title, table.heads(), rows)
 
 
@@ -182,7 +253,7 @@ def _walls(given: float) -> str:
 
 
 def _show_balance(terminal: Terminal, steady: SteadyHeat) -> None:
-    terminal.result(
+    terminal.sentence(
         f"Heat: {steady.carried:.4g} W leave with the oil, {_walls(steady.given)}; "
         f"{steady.balance:.0e} of it unaccounted for."
     )

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.linear.sheets.thrust import ThrustSheet
 
+
 @click.command(cls=Command)
 @case_argument
 @click.option("--gap", "gaps", multiple=True, type=LENGTH_OPTION, metavar="GAP",
@@ -56,8 +57,8 @@ def _show(terminal: Terminal, sheet: ThrustSheet) -> None:
 
     titles = {FILMS: "thrust bearing", TILT_STIFFNESS: "stiffness in tilt, N m", TILT_DAMPING: "damping in tilt, N m s"}
     for bearing in sheet.bearings:
-        name = " ".join(filter(None, (sheet.case.heading, bearing)))
         states = table_of(THRUST, sheet.of(bearing))
+        terminal.result(" ".join(filter(None, (sheet.case.heading, bearing))))
         for table, title in titles.items():
-            terminal.show(f"{name}, {title}", states, table)
+            terminal.show(title, states, table)
     terminal.sentence(f"{legend(THRUST, FILMS)}. Errors are the change from a mesh of half as many elements per side.")

@@ -251,7 +251,7 @@ def _report(case: Case, run: Run, terminal: Terminal) -> None:
     if run.events:
         events = with_whirl_names(run.events)
         terminal.show("events", table_of(EVENTS, events))
-        for sentence in about_certainty(events, run.cost, terminal.speeds):
+        for sentence in about_certainty(run, events, terminal.speeds):
             terminal.sentence(sentence)
         _show_whirls(run, terminal)
     for sentence in about_critical_speeds(run, run.events, terminal.speeds):

@@ -272,7 +272,7 @@ def _again(own: Shooting, other: OtherCells, shot: Shot, held: Array) -> Array:
 
 
 def _space_on(own: Shooting, other: OtherCells, space: SlowSpace) -> SlowSpace:
-    """What is known of slow motions, on other cells."""
+    """Slow subspace interpolated to another mesh."""
     states, images, by_parameters = (
         own.flow.states_on(other.shooting.flow, each) for each in (space.states, space.images, space.by_parameters)
     )

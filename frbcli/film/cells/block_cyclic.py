@@ -328,7 +328,7 @@ def ring_solver(k: int, sides: int = len(USUAL)) -> int:
 
 @cache
 def _address(k: int = 0, sides: int = 0) -> int:
-    """Of one size, or by default of all that have no code of their own."""
+    """Address of the solver for blocks of one size; without it that of the generic one."""
     made: Any = _any
     if k:
         own = {"COLUMN": (0,) * k, "SIDES": (0,) * sides, "CELLS": k, "LAYERS": k + sides}

@@ -454,8 +454,8 @@ def film_samples(film: FilmData, d: Array, v: Array, omega: Array) -> Array:
 
 
 def at_viscosity(film: FilmData, scale: float) -> FilmData:
-    """The film of so many times the viscosity, as one that is asked for its force at so many times the velocities:
-    pressures at openings that turn fall with the speed as it is."""
+    """The film with its viscosity times `scale`; ask it with scaled velocities. Pressures at openings that turn fall
+    with the speed as it is."""
     return film._replace(drop=film.drop / scale**2) if isinstance(film, MeanFilm) else film
 
 

@@ -110,7 +110,7 @@ def with_half_the_nodes(table: Array) -> Array:
 
 
 def _along_all_axes(values: Array, of: Callable[[Array, int, Callable[[Array], None]], Array]) -> Array:
-    """What a function of values, an axis and its end conditions makes of the values of a table."""
+    """Apply a function of values, an axis and its end conditions along all axes of a table."""
     table = of(of(values, 0, _ends_free), 2, _ends_free)
     even, odd = of(table[..., :1], 1, _ends_even), of(table[..., 1:], 1, _ends_odd)
     return np.ascontiguousarray(np.concatenate([even, odd], axis=3))

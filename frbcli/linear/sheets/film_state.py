@@ -153,8 +153,8 @@ def under_vertical_load(system: System, i: int, eccentricity: float, omega: floa
 
 @dataclass(frozen=True)
 class Fields:
-    """What pressure and flow of a film make: largest pressure in Pa, torque on the journal in N m, power in W, flow out
-    of the open ends in m^3/s."""
+    """Results integrated from the film's fields: largest pressure in Pa, torque on the journal in N m, power in W, flow
+    out of the open ends in m^3/s."""
 
     p_max: float
     torque: float

@@ -40,7 +40,7 @@ def bearing_figure(sheet: BearingSheet) -> Figure:
         draw_coefficient(panels[1, 0], sheet, "stiffness")
         draw_coefficient(panels[1, 1], sheet, "damping")
         _curves(panels[2, 0], sheet, "power loss in W", [("", lambda s: s.power)])
-        _curves(panels[2, 1], sheet, "side flow in mm³/s", [("", lambda s: 1e9 * s.side_flow)])
+        _curves(panels[2, 1], sheet, "side flow in l/min", [("", lambda s: 6e4 * s.side_flow)])
         _curves(panels[3, 0], sheet, "smallest film in µm", [("", lambda s: 1e6 * s.film_thickness_min)])
         _curves(panels[3, 1], sheet, "largest pressure in bar", [("", lambda s: 1e-5 * s.p_max)])
         if case.heat is not None:

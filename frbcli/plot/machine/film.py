@@ -48,15 +48,17 @@ def film_figure(test: KinematicTest) -> Figure:
 
 
 def _draw_lines(figure: Any, solved: list[KinematicResult]) -> None:
-    pressure, gap, oil = figure.subplots(3, 1, sharex=True, height_ratios=(2.4, 1.0, 1.3))
-    for number, result in enumerate(solved):
-        field = result.field
-        assert field is not None
+    fields = [result.field for result in solved if result.field is not None]
+    cavitates = any(field.fraction.min() < 1.0 for field in fields)  # else its oil fraction is 1 everywhere
+    pressure, gap, *oil = figure.subplots(
+        3 if cavitates else 2, 1, sharex=True, height_ratios=(2.4, 1.0, 1.3)[: 2 + cavitates]
+    )
+    for number, (result, field) in enumerate(zip(solved, fields, strict=True)):
         look = _look(number, len(solved))
         phi, values = mid_line(field, field.pressure, result.plan.section.far)
         pressure.plot(phi, values / BAR, label=label_of(result.cavitation), **look)
-        phi, values = mid_line(field, field.fraction, result.plan.section.far)
-        oil.plot(phi, values, **look)
+        for axes in oil:
+            axes.plot(*mid_line(field, field.fraction, result.plan.section.far), **look)
         phi, values = _turn(field, field.gap)
         gap.plot(phi, values, **(look if _moved(solved) else {"color": GREY}))
     if len(solved) > 1:
@@ -65,11 +67,13 @@ def _draw_lines(figure: Any, solved: list[KinematicResult]) -> None:
     pressure.set_ylabel("pressure in bar")
     gap.set_ylabel("gap H")
     gap.set_ylim(bottom=0.0)
-    oil.set_ylabel("oil fraction")
-    oil.set_ylim(0.0, 1.05)
-    oil.set_xlim(0.0, 360.0)
-    oil.set_xticks(range(0, 361, 45))
-    oil.set_xlabel("φ in ° (0 at the top, counter-clockwise)")
+    for axes in oil:
+        axes.set_ylabel("oil fraction")
+        axes.set_ylim(0.0, 1.05)
+    lowest = [gap, *oil][-1]
+    lowest.set_xlim(0.0, 360.0)
+    lowest.set_xticks(range(0, 361, 45))
+    lowest.set_xlabel("φ in ° (0 at the top, counter-clockwise)")
 
 
 def _draw_maps(figure: Any, solved: list[KinematicResult]) -> None:

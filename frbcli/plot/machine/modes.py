@@ -66,7 +66,7 @@ def draw_frequencies(axes: Axes, points: list[StabilityPoint]) -> None:
     critical = [point.critical.imag / (2 * np.pi) for point in points if len(point.oscillating)]
     top = max(fastest, ABOVE_LOWEST * max([*critical, *frequencies[grows]], default=0.0))
     ends = np.array([0.0, fastest])
-    for label, order, dashes in (("rotor speed", 1.0, (0, (5, 3))), ("half the rotor speed", 0.5, (0, (1, 2)))):
+    for label, order, dashes in (("1X", 1.0, (0, (5, 3))), ("0.5X", 0.5, (0, (1, 2)))):
         axes.plot(ends, order * ends, color=GREY, linestyle=dashes, linewidth=1.1, label=label, zorder=1.5)
     axes.scatter(
         speeds[~grows], frequencies[~grows], DOT, facecolors="white", edgecolors=BLUE, linewidths=0.9, zorder=2.0,
@@ -159,7 +159,7 @@ def _draw_campbell(axes: Axes, modes: Modes) -> None:
             axes.plot(speeds, frequencies, color=colour, linestyle=dashes, linewidth=1.4, label=label)
             low, high = (1.0 - error) * frequencies, (1.0 + error) * frequencies
             axes.fill_between(speeds, low, high, color=colour, alpha=BAND, linewidth=0.0)
-    axes.plot([0.0, fastest], [0.0, fastest], color=GREY, linestyle=(0, (1, 2)), label="rotor speed")
+    axes.plot([0.0, fastest], [0.0, fastest], color=GREY, linestyle=(0, (1, 2)), label="1X")
     axes.set_xlim(0.0, fastest)
     axes.set_ylim(0.0, HEADROOM * max([fastest, *modes.free_Hz[:1]]))
     axes.set_xlabel("rotor speed in Hz")

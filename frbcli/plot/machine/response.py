@@ -3,6 +3,7 @@ undamped critical speed map, with the stiffness of the films of the case over it
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -41,6 +42,8 @@ FILM_DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)))
 FILM_MARKS = ("o", "D", "^")
 APART = 0.04  # of the range of speeds: numbers of critical speeds that are nearer stand above each other
 MARGIN = 1.02  # of the axis of the speeds over the highest one
+NAME_COLUMNS, NAME_HEIGHT = (6, 28), 13.0  # points right of a critical map, and between names of its modes
+LAID_OUT, POINTS_PER_INCH = 0.85, 72.0  # height of axes over the height before titles and legends have their room
 LABEL_HEIGHT, LEVELS = 14, 4  # points between these numbers, and how many stand above each other
 
 
@@ -201,9 +204,7 @@ def critical_map_figure(speeds: CriticalMap) -> Figure:
 
 def draw_critical_map(axes: Axes, speeds: CriticalMap) -> None:
     """The map on axes of a figure: critical speeds in Hz over the stiffness in N/m."""
-    for values, colour, dashes, name in (
-        (speeds.forward, BLUE, "-", "forward whirl"), (speeds.backward, ORANGE, (0, (5, 2)), "backward whirl"),
-    ):  # fmt: skip
+    for values, colour, dashes, name in _directions(speeds):
         for number, curve in enumerate(values.T):
             axes.plot(speeds.stiffness, curve, color=colour, linestyle=dashes, label=name if number == 0 else None)
     for number, springs in enumerate(speeds.film_stiffness.T if len(speeds.film_speeds_Hz) else ()):
@@ -220,6 +221,29 @@ def draw_critical_map(axes: Axes, speeds: CriticalMap) -> None:
     axes.set_yscale("log")
     axes.set_xlim(float(speeds.stiffness[0]), float(speeds.stiffness[-1]))
     lowest = float(np.nanmin([speeds.forward, speeds.backward]))
-    axes.set_ylim(max(lowest, 0.02 * top), 20.0 * top)
+    highest = min(max(2.0 * top, float(np.nanmax([speeds.forward, speeds.backward]))), 20.0 * top)
+    axes.set_ylim(max(lowest, 0.02 * top), 1.2 * highest)
     axes.set_xlabel("stiffness of a bearing in N/m")
     axes.set_ylabel("critical speed in Hz")
+    _name_modes(axes, speeds)
+
+
+def _directions(speeds: CriticalMap) -> tuple[tuple[Array, str, Any, str], ...]:
+    """Critical speeds of each direction, with the look and the name of their curves."""
+    return (speeds.forward, BLUE, "-", "forward whirl"), (speeds.backward, ORANGE, (0, (5, 2)), "backward whirl")
+
+
+def _name_modes(axes: Axes, speeds: CriticalMap) -> None:
+    """1F, 2F and so on next to the ends of the curves; a name that would cover the one below stands higher."""
+    low, high = np.log(axes.get_ylim())
+    height = LAID_OUT * POINTS_PER_INCH * axes.bbox.height / axes.figure.dpi
+    for (values, colour, _, name), column in zip(_directions(speeds), NAME_COLUMNS, strict=True):
+        below = -math.inf
+        for number, end in enumerate(values[-1]):
+            if not math.log(end) <= high:  # nor NaN, of a mode that is missing
+                continue
+            place = height * (math.log(end) - low) / (high - low)
+            lift = max(0.0, below + NAME_HEIGHT - place)
+            below = place + lift
+            axes.annotate(f"{number + 1}{name[0].upper()}", (float(speeds.stiffness[-1]), end), (column, lift),
+                          textcoords="offset points", color=colour, va="center", annotation_clip=False)  # fmt: skip

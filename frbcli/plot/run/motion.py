@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,10 +16,12 @@ from matplotlib.patches import Circle
 from frbcli.analysis.signals import SignalColumn, films, joined, located, points
 from frbcli.arrays import Array
 from frbcli.plot.curves import HEIGHT, Over, Span, curves_figure, draw_curves
-from frbcli.plot.signals import MICRO, curve, cut, ends, heading, labels, motion, shell
-from frbcli.plot.style import COLOURS, GREY, legend_below, new_figure, styled
+from frbcli.plot.signals import MICRO, curve, cut, ends, envelope, heading, labels, motion, shell
+from frbcli.plot.style import BAND, COLOURS, GREY, legend_below, new_figure, styled
 from frbcli.results.records import Signal, pieces
 from frbcli.results.store import Run
+
+Line = Any  # a line style of matplotlib: a name, or an offset and lengths of dashes
 
 SIDES = ("inner", "outer")
 PANEL_HEIGHT = 2.6  # inches
@@ -59,6 +62,16 @@ def draw_eccentricity(
     draw_curves(axes, runs, curves, over, span)
     axes.set_ylim(0.0, 1.0)
     axes.set_ylabel("eccentricity")
+
+
+def draw_largest(axes: Axes, run: Run, film: str, colour: str, line: Line = "-", label: str = "") -> None:
+    """The largest eccentricity of a film over time as a line, and down to the smallest one a faint band: whirls of
+    several films would hide each other."""
+    times, lowest, highest = envelope(run, run.signal(joined("eccentricity", film)))
+    axes.fill_between(times, lowest, highest, color=colour, alpha=0.5 * BAND, linewidth=0.0)
+    axes.plot(times, highest, color=colour, linestyle=line, label=label.replace("_", " "))
+    axes.set_ylim(0.0, 1.0)
+    axes.set_ylabel("largest eccentricity,\nband: down to the smallest")
 
 
 def _groups(run: Run) -> list[tuple[str, list[str]]]:

@@ -97,7 +97,7 @@ SUBJECTS = {
                   uncertainty="temperature_uncertainty_K"),
             Panel("viscosity", "_Pa_s", "viscosity in mPa s", 1e3),
             Panel("power", "_W", "loss in W", uncertainty="power_uncertainty_W"),
-            Panel("flow", "_m3_s", "side flow in ml/s", 1e6),
+            Panel("flow", "_m3_s", "side flow in l/min", 6e4),
         ),
         "has no such heat.", "Draw a run of a case with [thermal].", "film", 9.0,
     ),

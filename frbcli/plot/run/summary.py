@@ -30,7 +30,7 @@ from frbcli.case.run import speed_unit_of
 from frbcli.equilibrium.ring_speed import concentric_ratios
 from frbcli.errors import InputError
 from frbcli.plot.curves import Over, curves_figure, draw_curves
-from frbcli.plot.run.motion import draw_distances, draw_eccentricity
+from frbcli.plot.run.motion import draw_distances, draw_eccentricity, draw_largest
 from frbcli.plot.signals import (
     MICRO,
     bearing_of,
@@ -50,6 +50,7 @@ from frbcli.plot.style import (
     BAND,
     BLACK,
     BLUE,
+    COLOURS,
     GREY,
     MOST_MARKED,
     SKY,
@@ -106,8 +107,7 @@ def summary_figure(run: Run) -> Figure:
     with styled():
         figure = new_figure(title, ", ".join(word for word in words if word), height=7.6)
         above, middle, below = figure.subplots(3, 1, sharex=True, height_ratios=(3.0, 4.0, 1.4))
-        draw = draw_eccentricity if any(True for _ in films(run.signals)) else draw_distances
-        draw(above, [run])
+        _draw_motion(above, run)
         above.set_xlim(begin, end)
         legend_beside(above)
         if len(run) >= FEWEST_SAMPLES:
@@ -130,6 +130,16 @@ def summary_figure(run: Run) -> Figure:
             words.append(f"{left_out} of {len(marked)} events have no room for their names")
             set_title(figure, title, ", ".join(word for word in words if word))
     return figure
+
+
+def _draw_motion(axes: Axes, run: Run) -> None:
+    """Eccentricities, of several films the largest ones; without films distances."""
+    named = list(films(run.signals))
+    if len(named) > 1:
+        for film, colour in zip(named, itertools.cycle(COLOURS), strict=False):
+            draw_largest(axes, run, film, colour, label=film)
+    else:
+        (draw_eccentricity if named else draw_distances)(axes, [run])
 
 
 def _draw_speed(axes: Axes, run: Run) -> None:
@@ -279,7 +289,6 @@ def times_of_speeds(run: Run, speeds_Hz: Sequence[float]) -> list[float]:
 
 SLOWEST = 0.02  # share of the highest rotor speed below which the ratio is not drawn
 ROOM = 1.15  # above the highest curve
-PAPER = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5}
 START = 0.05  # share of the run after which the highest value is sought: a rotor that falls drags its rings
 
 
@@ -318,12 +327,8 @@ def _draw_concentric(axes: Axes, concentric: dict[str, float]) -> None:
     for value in sorted(set(concentric.values())):
         alike = [name for name, own in concentric.items() if own == value]
         ring = alike[0] if len(alike) < len(concentric) else ""
-        axes.axhline(value, color=GREY, linestyle=(0, (5, 3)), linewidth=0.9)
-        axes.annotate(
-            " ".join(word for word in ("torque balance, concentric", ring) if word) + f": {value:.3f}",
-            (1.0, value), (-4, 3), xycoords=axes.get_yaxis_transform(), textcoords="offset points",
-            ha="right", va="bottom", color=GREY, bbox=PAPER,
-        )  # fmt: skip
+        label = " ".join(word for word in ("torque balance, concentric", ring) if word) + f": {value:.3f}"
+        axes.axhline(value, color=GREY, linestyle=(0, (5, 3)), linewidth=0.9, label=label)
 
 
 def _turning(run: Run) -> list[str]:

@@ -138,7 +138,7 @@ def sound_faults(case: Case) -> Iterator[Fault]:
     except ValueError:
         speed = display(given.vapour_sound_speed, "m/s")
         problem = f"leaves no vapour that is lighter than the oil at {display(oil.cavitation_pressure, 'Pa')}."
-        remedy = 'Correct it, film.barotropic.liquid_sound_speed, which is larger, or oil.cavitation_pressure.'
+        remedy = "Correct it, film.barotropic.liquid_sound_speed, which is larger, or oil.cavitation_pressure."
         yield Fault("film.barotropic.vapour_sound_speed", speed, None, problem, remedy)
 
 
@@ -302,10 +302,7 @@ def linear_faults(case: Case) -> Iterator[Fault]:
         return
     for each in DamperElement.of(case):
         if all(each.given.spring) and not each.given.centred and cavitates_at_once(case, each.given):
-            problem = (
-                "cavitates as soon as its shell moves: off the centre, to which a static load brings it, the forces of "
-                "opposite velocities are not opposite, and no damping describes both."
-            )
+            problem = "cavitates as soon as its shell moves. A cavitating damper off its centre has no linear damping."
             remedy = (
                 "Take a run; or write centred = true; or raise oil.ambient_pressure, and a supply, above "
                 "oil.cavitation_pressure, take "

@@ -113,8 +113,7 @@ def held_film_faults(case: Case) -> Iterator[Fault]:
                 yield Fault(held.key, held.value, None, problem, f"{held.remedy}, or take a law without memory there.")
             elif law.cavitates and not _is_full(case, film):
                 problem = (
-                    f"{held.what}, and its outer film cavitates as soon as it moves: the forces of opposite velocities "
-                    "are not opposite, and no damping describes both."
+                    f"{held.what}, and its outer film cavitates as soon as it moves. It has no linear damping then."
                 )
                 remedy = f'{held.remedy}, or feed the film above oil.cavitation_pressure, or write "sommerfeld".'
                 yield Fault(held.key, held.value, None, problem, remedy)
@@ -331,5 +330,3 @@ def turning_openings(case: Case) -> bool:
 
 def _turns(case: Case, place: FilmPlace) -> bool:
     return place.grid_body != HOUSING or turns_with_oil(case, place)
-
-

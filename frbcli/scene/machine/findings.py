@@ -72,7 +72,7 @@ FILM_OPERATION = (
     Column("turning", "m", "what centrifugal growth would add", shown=(Shown("by spin, um", "+.2g", "um"),)),
     Column("viscosity", "Pa s", "viscosity of the oil", shown=(Shown("mPa*s", ".4g", "mPa s"),)),
     Column("speed", "Hz", "sum of the speeds of journal and shell", lambda film: film.omega / (2.0 * math.pi),
-           shown=(speed_shown(head="walls, Hz"),)),
+           shown=(speed_shown(head="wall speeds, Hz"),)),
     Column("reynolds_number", "", "Reynolds number (3.3)", attrgetter("reynolds"), shown=(Shown("Re (3.3)", ".0f"),)),
     Column("laminar", "", "whether (3.3) holds"),
 )  # fmt: skip

@@ -281,7 +281,7 @@ RECESSES_OIL = CellError(6e-3, 1.5, BORES_OIL.along, least=40)
 
 @dataclass(frozen=True)
 class WorstFilm:
-    """What cells make of the error of a machine: the errors of all of its films. fewest: cells around that each of them
+    """The error of a machine by its cells: the errors of all of its films. fewest: cells around that each of them
     can have: the arrays of a machine have films of equal numbers of cells."""
 
     films: tuple[CellError, ...]

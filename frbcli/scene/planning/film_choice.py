@@ -124,7 +124,9 @@ def _rectangles(case: Case, target: float) -> FilmChoice:
     if theory == "auto":
         fits = short <= FILM_SHARE * target and not any(film.supply.divides or film.sealed < 1.0 for film in films)
         theory = "short" if fits else "finite"
-        theory_why = f"error of the short bearing with b/D = {slenderness:.2g}: {short:.1g} at {SOLVED_HOLDS_TO:g}"
+        theory_why = (
+            f"short-bearing theory is {100.0 * short:.3g} % off at eps = {SOLVED_HOLDS_TO:g}, b/D = {slenderness:.2g}"
+        )
         if any(film.supply.divides for film in films):
             theory_why = "axial grooves, which the short bearing does not have"
         elif any(film.sealed < 1.0 for film in films):

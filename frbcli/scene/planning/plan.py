@@ -340,11 +340,11 @@ def _decide_scene(case: Case, decide: Decide) -> None:
         decide("films", len(places), f"each ring lies between an inner and an outer film, and {moves}")
     for given in case.given_bearings:
         if isinstance(given, CartridgeBearing):
-            decide(f"{given.name} cartridge".strip(), *_body(given, case.film.tilt == "follows"))
+            decide(f"cartridge {given.name}".strip(), *_body(given, case.film.tilt == "follows"))
     for bearing in rings(case):
         alone = bearing in case.given_bearings  # and not an end of a cartridge
         if computed := _computed(bearing, alone and case.film.tilt == "follows"):
-            decide(f"{bearing.name} ring".strip(), *computed)
+            decide(f"ring {bearing.name}".strip(), *computed)
         if coupled(bearing):
             decide("channels", f"{bearing.name} coupled".strip(), _coupling_of_films(case, bearing))
     if len(places) == 1 and form_of(case).solved:
