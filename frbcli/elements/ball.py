@@ -151,6 +151,7 @@ class BallBearing:
     def numbers(self) -> BallNumbers:
         """What it is to the kernels."""
         inner, outer = self.contacts
+        gives_inner, gives_outer = (each.stiffness ** (-2.0 / 3.0) for each in (inner, outer))
         return BallNumbers(
             points=self.points,
             share=self.rows * self.balls / self.points,
@@ -165,6 +166,9 @@ class BallBearing:
             preload=self.offset if self.preload is None else self.rows * self.preload + self.thrust[0],
             cage=self.cage_ratio if self.turning else 0.0,
             thrust=self.thrust[1],
+            split=gives_inner / (gives_inner + gives_outer),
+            turn_cos=math.cos(2.0 * math.pi / self.points),
+            turn_sin=math.sin(2.0 * math.pi / self.points),
         )
 
     @property
