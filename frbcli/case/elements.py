@@ -19,8 +19,10 @@ from frbcli.case.model import (
     Damping,
     Density,
     Force,
+    FrictionFactor,
     GrooveCurvature,
     Identifier,
+    KinematicViscosity,
     Label,
     Length,
     Model,
@@ -145,6 +147,14 @@ class RollingMaterial(Model):
         return Elastic(self.modulus, self.poisson, self.density)
 
 
+class BallFriction(Model):
+    """Palmgren's friction, by the numbers of a catalogue: it brakes a rotor of free speed."""
+
+    f1: FrictionFactor = Field(default=0.0, description="torque over pitch diameter and the sum of the balls' loads")
+    f0: FrictionFactor = Field(default=0.0, description="of the lubricant, by its kind and amount")
+    viscosity: KinematicViscosity | None = Field(default=None, description="of the lubricant, with f0")
+
+
 class AxialOffset(Model):
     """Preload by axially held rings."""
 
@@ -206,6 +216,7 @@ class BallBearingKeys(BearingWithoutFilm):
         default="turning",
         description="balls pass in runs (in equilibrium one is below the shaft), or are spread evenly",
     )
+    friction: BallFriction = Field(default=BallFriction(), description="on a rotor of free speed; none by default")
     dynamic_rating: Force | None = Field(
         default=None, description="catalogue load rating C, for the life"
     )

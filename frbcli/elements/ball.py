@@ -39,6 +39,7 @@ from frbcli.elements.ball_force import (
     BallNumbers,
     HertzContact,
     ball_bearing_force,
+    ball_friction,
     ball_numbers,
     contact,
     rings,
@@ -48,10 +49,11 @@ from frbcli.errors import Fault, NotConverged
 from frbcli.materials import ROLLING, Elastic
 from frbcli.rotor.assembly import Link
 from frbcli.rotor.loads import LinearPart
-from frbcli.rotor.port import ANGLE, D_X, D_Y, F_X, F_Y, SPEED, XX, XY, YX, YY, ForceLaw
+from frbcli.rotor.port import ANGLE, D_X, D_Y, F_X, F_Y, GRIP, SPEED, TORQUE, XX, XY, YX, YY, ForceLaw
 from frbcli.units import display
 
 SMALL_APPROACH = 1e-6  # m
+PER_TURN = 1e6 * 30.0 / math.pi  # nu n in mm^2/s rpm of nu omega in m^2/s rad/s
 MEAN_POINTS = 24  # at which balls that are spread evenly are summed, at least; twice as many balls are as good
 
 
@@ -63,7 +65,8 @@ class BallBearing:
     radii of the grooves over the diameter of a ball; ball, ring: their materials; rows: 1 or 2; preload: along the axis
     on each row, N, or None where the rings are held at `offset`, the axial displacement in m from their first contact;
     turning: whether the balls pass, or act as if they were spread evenly; thrust: on all rows in addition to the
-    preload, in N, and over the square of the speed of the shaft, in N s^2.
+    preload, in N, and over the square of the speed of the shaft, in N s^2; f_1, f_0: of Palmgren's friction, see
+    ball_friction; viscosity: kinematic, of the lubricant, m^2/s.
     """
 
     balls: int
@@ -79,6 +82,9 @@ class BallBearing:
     offset: float = 0.0
     turning: bool = True
     thrust: tuple[float, float] = (0.0, 0.0)
+    f_1: float = 0.0
+    f_0: float = 0.0
+    viscosity: float = 0.0
 
     @property
     def gamma(self) -> float:
@@ -152,6 +158,7 @@ class BallBearing:
         """What it is to the kernels."""
         inner, outer = self.contacts
         gives_inner, gives_outer = (each.stiffness ** (-2.0 / 3.0) for each in (inner, outer))
+        lubricant = self.rows * self.f_0 * self.pitch_diameter**3
         return BallNumbers(
             points=self.points,
             share=self.rows * self.balls / self.points,
@@ -169,6 +176,9 @@ class BallBearing:
             split=gives_inner / (gives_inner + gives_outer),
             turn_cos=math.cos(2.0 * math.pi / self.points),
             turn_sin=math.sin(2.0 * math.pi / self.points),
+            load_friction=self.f_1 * self.pitch_diameter,
+            viscous_friction=0.1 * lubricant * (PER_TURN * self.viscosity) ** (2.0 / 3.0),
+            least_friction=16.0 * lubricant,
         )
 
     @property
@@ -298,7 +308,7 @@ def rating_life(bearing: BallBearing, balls: Balls, rating: float) -> float:
     return 1e6 * damage**-WEIBULL if damage > 0.0 else math.inf
 
 
-LEFT_OUT = "friction, the gyroscopic moment of the balls and moments of the rings are left out"
+LEFT_OUT = "the gyroscopic moment of the balls and moments of the rings are left out"
 
 
 @dataclass(frozen=True)
@@ -313,6 +323,11 @@ class BallForce(ForceLaw):
     def turns(self) -> bool:  # type: ignore[override]
         """See ForceLaw: with a cage that turns."""
         return self.rings.turning
+
+    @property
+    def brakes(self) -> bool:  # type: ignore[override]
+        """See ForceLaw: with numbers of its friction."""
+        return self.rings.f_1 > 0.0 or self.rings.f_0 > 0.0
 
     def inside(self, memories: Array) -> dict[str, tuple[str, Array]]:
         of, (at_inner, at_outer) = self.rings.numbers, self.rings.contacts
@@ -350,6 +365,8 @@ class BallForce(ForceLaw):
         for i in range(len(answer)):
             answer[i] = 0.0
         answer[F_X], answer[F_Y] = f_x, f_y
+        if of.load_friction > 0.0 or of.least_friction > 0.0:
+            answer[TORQUE], answer[GRIP] = ball_friction(of, motion[SPEED], memory)
         answer[XX], answer[XY], answer[YX], answer[YY] = -xx, -xy, -yx, -yy
 
 
@@ -390,6 +407,7 @@ class BallBearingElement(MachineElement):
             ball=_material(given.ball_material), ring=_material(given.ring_material),
             rows=1 if given.arrangement == "single" else 2, preload=force, offset=offset,
             turning=given.cage == "turning", thrust=self.thrust,
+            f_1=given.friction.f1, f_0=given.friction.f0, viscosity=given.friction.viscosity or 0.0,
         )  # fmt: skip
 
     def link(self, site: Site) -> Link:
@@ -439,7 +457,9 @@ class BallBearingElement(MachineElement):
         preload = f"preload {display(rings.preload, 'N')} by a spring" if rings.preload else "rings held along the axis"
         if given.locating is not None:
             preload += f", and the axial load to the {given.locating}"
-        return "bearings", value, f"Hertz contacts, centrifugal force of the balls, {angle}, {preload}; {LEFT_OUT}"
+        friction = "" if BallForce(rings).brakes else "friction, "
+        reason = f"Hertz contacts, centrifugal force of the balls, {angle}, {preload}"
+        return "bearings", value, f"{reason}; {friction}{LEFT_OUT}"
 
 
 def _thrust(case: Case, bearing: BallBearingKeys) -> tuple[float, float]:

@@ -117,7 +117,7 @@ class BallNumbers(NamedTuple):
     or, of rings that are held, their axial displacement; cage: its speed over the shaft's, 0 for the mean over its
     angle; thrust: what an axial load adds to the preload, over the square of the speed of the shaft, N s^2; split: of
     the deflection of both contacts in series, the share of the inner one; turn_cos, turn_sin: of the angle between
-    places."""
+    places; load_friction, viscous_friction, least_friction: of ball_friction, in m, N m s^(2/3) and N m."""
 
     points: int
     share: float
@@ -135,13 +135,17 @@ class BallNumbers(NamedTuple):
     split: float
     turn_cos: float
     turn_sin: float
+    load_friction: float
+    viscous_friction: float
+    least_friction: float
 
 
 def ball_numbers(numbers: Array) -> BallNumbers:
-    """The bearing whose numbers (16,) are in an array."""
+    """The bearing whose numbers (19,) are in an array."""
     return BallNumbers(
         int(numbers[0]), numbers[1], numbers[2], numbers[3], numbers[4], numbers[5], numbers[6], numbers[7], numbers[8],
         numbers[9], numbers[10], numbers[11], numbers[12], numbers[13], numbers[14], numbers[15],
+        numbers[16], numbers[17], numbers[18],
     )  # fmt: skip
 
 
@@ -332,6 +336,27 @@ def ball_bearing_force(
     x, y = (xz / zz, yz / zz) if zz > 0.0 else (0.0, 0.0)
     memory[0], memory[1], memory[2], memory[3], memory[4] = d_z + step, d_x, d_y, -x, -y
     return -f_x - xz * step, -f_y - yz * step, xx - x * xz, xy - x * yz, xy - x * yz, yy - y * yz
+
+
+def ball_friction(of: BallNumbers, omega: float, memory: Array) -> tuple[float, float]:
+    """Torque in N m on the shaft at omega rad/s with the balls that the last call has left in the memory, and by how
+    much it falls with the speed.
+
+    Palmgren (Harris, chapter 14): M_1 = f_1 D F with the sum F of the loads of the balls at the inner ring, and of the
+    lubricant M_0 = 0.1 f_0 D^3 (nu n)^(2/3), SI but for nu in mm^2/s and n in rpm, at least 16 f_0 D^3. A rotor of free
+    speed turns forwards: as a constant load, they brake it until it stands.
+    """
+    loads, viscous, speed = 0.0, of.least_friction, abs(omega)
+    for j in range(of.points):
+        at = RINGS + KNOWN * j
+        along, out = memory[at] - memory[at + 2], memory[at + 1] - memory[at + 3]
+        depth = max(math.sqrt(along * along + out * out) - of.inner, 0.0)
+        loads += of.k_inner * depth * math.sqrt(depth)
+    turning = of.viscous_friction * speed ** (2.0 / 3.0)
+    grip = 0.0
+    if turning > viscous:
+        viscous, grip = turning, 2.0 / 3.0 * turning / speed
+    return -(viscous + of.load_friction * of.share * loads), grip
 
 
 MICROMETRE = 1e-6

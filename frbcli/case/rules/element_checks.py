@@ -95,6 +95,10 @@ def _balls(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
         problem = "is given with radial_clearance, from which it follows." if angle else "is missing."
         yield Breach((*path, "contact_angle"), problem, 'Keep one: contact_angle = "15 deg", or radial_clearance.')
     yield from _preload(path, bearing, angle)
+    friction = table(bearing, "friction")
+    if bool(number(friction, "f0", NUMBER)) != ("viscosity" in friction):
+        problem = "has no effect without f0." if "viscosity" in friction else "is missing; the friction by f0 needs it."
+        yield Breach((*path, "friction", "viscosity"), problem, 'Give both, e.g. f0 = 1, viscosity = "20 mm^2/s".')
     ball, pitch = (number(bearing, key, "m") for key in ("ball_diameter", "pitch_diameter"))
     balls = bearing.get("balls")
     if ball is None or pitch is None or not isinstance(balls, int) or balls < 3:
