@@ -199,7 +199,10 @@ class BallBearingKeys(BearingWithoutFilm):
     )
     ring_material: AnyRollingMaterial = Field(default="steel", description="a name, or `{modulus, poisson, density}`")
     arrangement: Literal["single", "face-to-face", "back-to-back", "tandem"] = Field(
-        default="single", description="one row, or two; two differ in tilt only, which is neglected"
+        default="single", description="one row, or two"
+    )
+    row_distance: Length | None = Field(
+        default=None, description="of two rows face to face or back to back, which then hold the shaft in tilt"
     )
     preload: AnyPreload = Field(
         default=0.0, description="axial, on each row: constant, by a spring, or `{offset}` of held rings"
@@ -207,7 +210,7 @@ class BallBearingKeys(BearingWithoutFilm):
     locating: Literal["left", "right"] | None = Field(
         default=None,
         description="side towards which its fixed outer ring holds the shaft: carries the load of [axial] beside its "
-        "preload",
+        "preload, of an opposed pair in one row",
     )
     damping: Damping = Field(
         default=0.0, description="radial, between the rings; usual: 0.25e-5 to 2.5e-5 s times the stiffness"

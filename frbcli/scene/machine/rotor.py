@@ -141,7 +141,7 @@ def element_forces(
 
     def force(parts: Parts) -> NDArray[np.complex128]:
         total = np.zeros(2, dtype=np.complex128)
-        for link, part in parts.links:
+        for link, part in (each for each in parts.links if each[0].sees == PLANE):
             stiffness, damping, mass = part.at(omega)
             total -= (stiffness + 1j * frequency * damping - frequency**2 * mass) @ motion(link)
         for name, link, _ in parts.ports:
