@@ -150,9 +150,9 @@ class RollingMaterial(Model):
 class BallFriction(Model):
     """Palmgren's friction, by the numbers of a catalogue: it brakes a rotor of free speed."""
 
-    f1: FrictionFactor = Field(default=0.0, description="torque over pitch diameter and the sum of the balls' loads")
-    f0: FrictionFactor = Field(default=0.0, description="of the lubricant, by its kind and amount")
-    viscosity: KinematicViscosity | None = Field(default=None, description="of the lubricant, with f0")
+    f1: FrictionFactor = Field(default=0.0, description="torque over pitch diameter and sum of ball loads")
+    f0: FrictionFactor = Field(default=0.0, description="of the lubricant")
+    viscosity: KinematicViscosity | None = Field(default=None, description="kinematic, with f0")
 
 
 class AxialOffset(Model):
@@ -202,7 +202,7 @@ class BallBearingKeys(BearingWithoutFilm):
         default="single", description="one row, or two"
     )
     row_distance: Length | None = Field(
-        default=None, description="of two rows face to face or back to back, which then hold the shaft in tilt"
+        default=None, description="of an opposed pair, which then holds the shaft in tilt"
     )
     preload: AnyPreload = Field(
         default=0.0, description="axial, on each row: constant, by a spring, or `{offset}` of held rings"
@@ -210,7 +210,7 @@ class BallBearingKeys(BearingWithoutFilm):
     locating: Literal["left", "right"] | None = Field(
         default=None,
         description="side towards which its fixed outer ring holds the shaft: carries the load of [axial] beside its "
-        "preload, of an opposed pair in one row",
+        "preload",
     )
     damping: Damping = Field(
         default=0.0, description="radial, between the rings; usual: 0.25e-5 to 2.5e-5 s times the stiffness"
@@ -219,7 +219,7 @@ class BallBearingKeys(BearingWithoutFilm):
         default="turning",
         description="balls pass in runs (in equilibrium one is below the shaft), or are spread evenly",
     )
-    friction: BallFriction = Field(default=BallFriction(), description="on a rotor of free speed; none by default")
+    friction: BallFriction = Field(default=BallFriction(), description="brakes a free speed")
     dynamic_rating: Force | None = Field(
         default=None, description="catalogue load rating C, for the life"
     )
