@@ -19,8 +19,10 @@ from frbcli.case.model import (
     Damping,
     Density,
     Force,
+    FrictionFactor,
     GrooveCurvature,
     Identifier,
+    KinematicViscosity,
     Label,
     Length,
     Model,
@@ -145,6 +147,14 @@ class RollingMaterial(Model):
         return Elastic(self.modulus, self.poisson, self.density)
 
 
+class BallFriction(Model):
+    """Palmgren's friction, by the numbers of a catalogue: it brakes a rotor of free speed."""
+
+    f1: FrictionFactor = Field(default=0.0, description="torque over pitch diameter and sum of ball loads")
+    f0: FrictionFactor = Field(default=0.0, description="of the lubricant")
+    viscosity: KinematicViscosity | None = Field(default=None, description="kinematic, with f0")
+
+
 class AxialOffset(Model):
     """Preload by axially held rings."""
 
@@ -189,7 +199,10 @@ class BallBearingKeys(BearingWithoutFilm):
     )
     ring_material: AnyRollingMaterial = Field(default="steel", description="a name, or `{modulus, poisson, density}`")
     arrangement: Literal["single", "face-to-face", "back-to-back", "tandem"] = Field(
-        default="single", description="one row, or two; two differ in tilt only, which is neglected"
+        default="single", description="one row, or two"
+    )
+    row_distance: Length | None = Field(
+        default=None, description="of an opposed pair, which then holds the shaft in tilt"
     )
     preload: AnyPreload = Field(
         default=0.0, description="axial, on each row: constant, by a spring, or `{offset}` of held rings"
@@ -206,6 +219,7 @@ class BallBearingKeys(BearingWithoutFilm):
         default="turning",
         description="balls pass in runs (in equilibrium one is below the shaft), or are spread evenly",
     )
+    friction: BallFriction = Field(default=BallFriction(), description="brakes a free speed")
     dynamic_rating: Force | None = Field(
         default=None, description="catalogue load rating C, for the life"
     )

@@ -4,16 +4,7 @@ The contact angle without load is given by the grooves, or follows from the radi
 from one side to the other: cos(alpha_0) = 1 - G / (2 A), A = (f_i + f_o - 1) d (Harris, Rolling Bearing Analysis,
 chapter 2).
 
-Static equilibrium of a ball bearing, the loads of its balls there, and its basic rating life L10 from these loads.
-
-ISO/TS 16281 (basic reference rating life), which is L10 = (C / P)^3 of ISO 281 for the distribution of loads that ISO
-281 assumes: with gamma = d cos(alpha) / D, i rows of Z balls and
-
-    rho = 1.044 ((1 - gamma) / (1 + gamma))^1.72 (f_i / f_o (2 f_o - 1) / (2 f_i - 1))^0.41
-    Q_ci = C / (0.407 Z (i cos alpha)^0.7) (1 + rho^(10/3))^0.3
-    Q_ce = C / (0.389 Z (i cos alpha)^0.7) (1 + rho^(-10/3))^0.3
-
-a ring that turns bears the cubic mean of the loads, one that stands their mean with the power 10/3.
+Static equilibrium of a ball bearing at a displacement, and the loads of its balls there.
 
 A ball bearing between shaft and shell: its rings, by the keys of the case.
 """
@@ -22,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, ClassVar, Self
 
@@ -38,20 +29,24 @@ from frbcli.elements.ball_force import (
     RINGS,
     BallNumbers,
     HertzContact,
+    ball,
     ball_bearing_force,
+    ball_friction,
     ball_numbers,
     contact,
+    of_balls,
     rings,
 )
 from frbcli.elements.element import Line, MachineElement, Parts, Site
-from frbcli.errors import Fault, NotConverged
+from frbcli.errors import Fault
 from frbcli.materials import ROLLING, Elastic
-from frbcli.rotor.assembly import Link
+from frbcli.rotor.assembly import COORDINATES, PLANE, Link
 from frbcli.rotor.loads import LinearPart
-from frbcli.rotor.port import ANGLE, D_X, D_Y, F_X, F_Y, SPEED, XX, XY, YX, YY, ForceLaw
+from frbcli.rotor.port import ANGLE, D_X, D_Y, F_X, F_Y, GRIP, SPEED, TORQUE, XX, XY, YX, YY, ForceLaw
 from frbcli.units import display
 
 SMALL_APPROACH = 1e-6  # m
+PER_TURN = 1e6 * 30.0 / math.pi  # nu n in mm^2/s rpm of nu omega in m^2/s rad/s
 MEAN_POINTS = 24  # at which balls that are spread evenly are summed, at least; twice as many balls are as good
 
 
@@ -63,7 +58,8 @@ class BallBearing:
     radii of the grooves over the diameter of a ball; ball, ring: their materials; rows: 1 or 2; preload: along the axis
     on each row, N, or None where the rings are held at `offset`, the axial displacement in m from their first contact;
     turning: whether the balls pass, or act as if they were spread evenly; thrust: on all rows in addition to the
-    preload, in N, and over the square of the speed of the shaft, in N s^2.
+    preload, in N, and over the square of the speed of the shaft, in N s^2; f_1, f_0: of Palmgren's friction, see
+    ball_friction; viscosity: kinematic, of the lubricant, m^2/s.
     """
 
     balls: int
@@ -79,6 +75,9 @@ class BallBearing:
     offset: float = 0.0
     turning: bool = True
     thrust: tuple[float, float] = (0.0, 0.0)
+    f_1: float = 0.0
+    f_0: float = 0.0
+    viscosity: float = 0.0
 
     @property
     def gamma(self) -> float:
@@ -151,6 +150,8 @@ class BallBearing:
     def numbers(self) -> BallNumbers:
         """What it is to the kernels."""
         inner, outer = self.contacts
+        gives_inner, gives_outer = (each.stiffness ** (-2.0 / 3.0) for each in (inner, outer))
+        lubricant = self.rows * self.f_0 * self.pitch_diameter**3
         return BallNumbers(
             points=self.points,
             share=self.rows * self.balls / self.points,
@@ -165,6 +166,12 @@ class BallBearing:
             preload=self.offset if self.preload is None else self.rows * self.preload + self.thrust[0],
             cage=self.cage_ratio if self.turning else 0.0,
             thrust=self.thrust[1],
+            split=gives_inner / (gives_inner + gives_outer),
+            turn_cos=math.cos(2.0 * math.pi / self.points),
+            turn_sin=math.sin(2.0 * math.pi / self.points),
+            load_friction=self.f_1 * self.pitch_diameter,
+            viscous_friction=0.1 * lubricant * (PER_TURN * self.viscosity) ** (2.0 / 3.0),
+            least_friction=16.0 * lubricant,
         )
 
     @property
@@ -173,9 +180,6 @@ class BallBearing:
         return np.zeros(RINGS + KNOWN * self.points)
 
 
-SETTLED, CARRIED = 1e-12, 1e-6  # of the load: what is left over at rest, and where steps no longer help
-STEPS = 80
-FIRST = 1e-6  # m, beyond which the place along a load's line is sought
 ROUND = 1e-15  # m, below which a deflection is round-off of the places
 
 
@@ -229,72 +233,33 @@ def balls_of(of: BallNumbers, memory: Array, cage: float) -> Balls:
     return Balls(around, inner_angle, outer_angle, inner_load, outer_load)
 
 
-def under_load(bearing: BallBearing, load: Array, omega: float, cage: float = 0.0) -> RestingRings:
-    """The bearing under a load (2,) in N on the inner ring, at omega rad/s and an angle of the cage in rad.
+OPPOSED = ("face-to-face", "back-to-back")
+TILTED = np.arange(2, 4)  # among the COORDINATES
+SPEEDS = 17  # at which the stiffness in tilt is computed
 
-    Newton's method on the displacement, from where the ring carries the load along its line; a step is halved until the
-    imbalance falls. Raises NotConverged.
+
+def row_in_tilt(row: BallBearing, place: float, sense: float, omega: float) -> tuple[float, float]:
+    """Of one row with its ring in the middle: force in N and moment in N m by a slope of the shaft, about a point on
+    the axis from which the middle of the row is at `place` in m; sense: 1 if the ring is pressed towards larger
+    positions, else -1.
+
+    The centre of the inner groove lies at R across and z along the axis from the point. A slope t moves it by z t
+    across and by -R t cos(psi) along the axis, and turns the lever of the force of each ball.
     """
-    of, memory, size = bearing.numbers, bearing.memory, float(np.linalg.norm(load))
-    place = np.zeros(2) if size == 0.0 else _along(of, memory, load / size, size, omega, cage)
-    step, least = np.zeros(2), math.inf
-    for _ in range(STEPS):
-        x, y = (place + step).tolist()
-        f_x, f_y, *k = ball_bearing_force(of, x, y, omega, cage, memory)
-        missed = load + np.array([f_x, f_y])
-        left = float(np.linalg.norm(missed))
-        if left >= least:
-            step *= 0.5
-            continue
-        place, least = place + step, left
-        stiffness = np.reshape(k, (2, 2))
-        # along what carries nothing, as a ring within its clearance, it stays
-        step = np.linalg.lstsq(stiffness, missed, rcond=1e-12)[0]
-        if left <= SETTLED * size:
-            break
-    if least <= CARRIED * size:
-        return at_displacement(bearing, place, omega, cage)
-    raise NotConverged(f"A ball bearing does not carry {size:.4g} N: {least:.3g} N are left.")
+    of, memory = row.numbers, row.memory
+    ball_bearing_force(of, 0.0, 0.0, omega, 0.0, memory)
+    z = of.preload if of.held else float(memory[0])
+    centrifugal, rest = of_balls(of, omega)
+    q_a, q_r, aa, ar, rr = ball(of, of.axial + z, of.radial, centrifugal, rest, memory, RINGS)
+    across = 0.5 * row.pitch_diameter + of.inner * math.cos(row.contact_angle)
+    along = place + sense * of.inner * math.sin(row.contact_angle)
+    half = 0.5 * row.balls
+    force = half * (rr * along - sense * ar * across)
+    moment = half * (rr * along**2 - 2.0 * sense * ar * along * across + aa * across**2)
+    return force, moment - half * (q_r * across + 2.0 * sense * q_a * along)
 
 
-def _along(of: BallNumbers, memory: Array, line: Array, size: float, omega: float, cage: float) -> Array:
-    """(2,) place in m on a line at which the force against it is as large as the load."""
-    low, high = 0.0, FIRST
-
-    def carried(way: float) -> float:
-        x, y = (way * line).tolist()
-        f_x, f_y, *_ = ball_bearing_force(of, x, y, omega, cage, memory)
-        return -float(line @ [f_x, f_y])
-
-    while carried(high) < size:
-        low, high = high, 2.0 * high
-        if high > of.radial:
-            raise NotConverged(f"A ball bearing does not carry {size:.4g} N within its grooves.")
-    for _ in range(30):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if carried(middle) < size else (low, middle)
-    return high * line
-
-
-STANDING, TURNING, WEIBULL = 10.0 / 3.0, 3.0, 0.9
-
-
-def rating_life(bearing: BallBearing, balls: Balls, rating: float) -> float:
-    """L10 in revolutions under the loads of the balls of each row; rating: C of the whole bearing in N. Infinite
-    without a load."""
-    gamma, f_i, f_o = bearing.gamma, bearing.inner, bearing.outer
-    grooves = f_i / f_o * (2.0 * f_o - 1.0) / (2.0 * f_i - 1.0)
-    rho = 1.044 * ((1.0 - gamma) / (1.0 + gamma)) ** 1.72 * grooves**0.41
-    each = rating / (bearing.balls * (bearing.rows * math.cos(bearing.contact_angle)) ** 0.7)
-    inner = each / 0.407 * (1.0 + rho**STANDING) ** 0.3
-    outer = each / 0.389 * (1.0 + rho**-STANDING) ** 0.3
-    bears_inner = float(np.mean(balls.inner_load**TURNING)) ** (1.0 / TURNING)
-    bears_outer = float(np.mean(balls.outer_load**STANDING)) ** (1.0 / STANDING)
-    damage = bearing.rows * ((bears_inner / inner) ** STANDING + (bears_outer / outer) ** STANDING)
-    return 1e6 * damage**-WEIBULL if damage > 0.0 else math.inf
-
-
-LEFT_OUT = "friction, the gyroscopic moment of the balls and moments of the rings are left out"
+LEFT_OUT = "the gyroscopic moment of the balls is left out"
 
 
 @dataclass(frozen=True)
@@ -309,6 +274,11 @@ class BallForce(ForceLaw):
     def turns(self) -> bool:  # type: ignore[override]
         """See ForceLaw: with a cage that turns."""
         return self.rings.turning
+
+    @property
+    def brakes(self) -> bool:  # type: ignore[override]
+        """See ForceLaw: with numbers of its friction."""
+        return self.rings.f_1 > 0.0 or self.rings.f_0 > 0.0
 
     def inside(self, memories: Array) -> dict[str, tuple[str, Array]]:
         of, (at_inner, at_outer) = self.rings.numbers, self.rings.contacts
@@ -346,6 +316,8 @@ class BallForce(ForceLaw):
         for i in range(len(answer)):
             answer[i] = 0.0
         answer[F_X], answer[F_Y] = f_x, f_y
+        if of.load_friction > 0.0 or of.least_friction > 0.0:
+            answer[TORQUE], answer[GRIP] = ball_friction(of, motion[SPEED], memory)
         answer[XX], answer[XY], answer[YX], answer[YY] = -xx, -xy, -yx, -yy
 
 
@@ -386,16 +358,50 @@ class BallBearingElement(MachineElement):
             ball=_material(given.ball_material), ring=_material(given.ring_material),
             rows=1 if given.arrangement == "single" else 2, preload=force, offset=offset,
             turning=given.cage == "turning", thrust=self.thrust,
+            f_1=given.friction.f1, f_0=given.friction.f0, viscosity=given.friction.viscosity or 0.0,
         )  # fmt: skip
 
-    def link(self, site: Site) -> Link:
+    @property
+    def rows(self) -> tuple[tuple[str, BallBearing], ...]:
+        """Rows that act together, by the ends of the names of their signals: all, or the left and the right one, of
+        which one alone carries the axial load."""
+        rings = self.rings
+        if self.given.arrangement not in OPPOSED or not any(self.thrust):
+            return (("", rings),)
+        loaded, other = replace(rings, rows=1), replace(rings, rows=1, thrust=(0.0, 0.0))
+        # back to back, the left row is pressed as the shaft moves to the right
+        left = (self.given.arrangement == "back-to-back") == (self.given.locating == "right")
+        return (("left", loaded if left else other), ("right", other if left else loaded))
+
+    def link(self, site: Site, sees: tuple[str, ...] = PLANE) -> Link:
         """Where its force acts."""
-        return Link(site.journal(self.given.name), site.shell(self.given.name), site.count)
+        return Link(site.journal(self.given.name), site.shell(self.given.name), site.count, sees)
 
     @property
-    def signal(self) -> str:
-        """Name of the signal of its force."""
-        return f"{BallForce.quantity}_{self.given.name}".rstrip("_")
+    def signals(self) -> tuple[str, ...]:
+        """Names of the signals of its force, by its rows."""
+        return tuple("_".join(filter(None, (BallForce.quantity, self.given.name, end))) for end, _ in self.rows)
+
+    @property
+    def tilt(self) -> LinearPart | None:
+        """Stiffness and damping of two opposed rows in tilt over the speed, with the ring in the middle."""
+        distance = self.given.row_distance
+        if distance is None:
+            return None
+        one = replace(self.rings, rows=1, turning=False)
+        both = [replace(row, rows=1, turning=False) for _, row in self.rows] if len(self.rows) > 1 else [one, one]
+        sense = 1.0 if self.given.arrangement == "back-to-back" else -1.0
+        speeds = np.linspace(0.0, self.top, SPEEDS if self.top else 1)
+        stiffness, damping = np.zeros((len(speeds), 4, 4)), np.zeros((len(speeds), 4, 4))
+        damping[:, TILTED, TILTED] = 0.25 * self.given.damping * distance**2
+        for matrix, omega in zip(stiffness, speeds, strict=True):
+            left = row_in_tilt(both[0], -0.5 * distance, sense, float(omega))
+            right = row_in_tilt(both[1], 0.5 * distance, -sense, float(omega))
+            force, moment = np.add(left, right)
+            matrix[0, 3] = matrix[3, 0] = force  # tilt_y is the slope of x, tilt_x that of -y
+            matrix[1, 2] = matrix[2, 1] = -force
+            matrix[TILTED, TILTED] = moment
+        return LinearPart(speeds, stiffness, damping, np.zeros_like(damping))
 
     @property
     def linear(self) -> LinearPart:
@@ -406,8 +412,11 @@ class BallBearingElement(MachineElement):
     def parts(self, site: Site) -> Parts:
         link = self.link(site)
         damping = LinearPart.of(np.zeros((2, 2)), self.given.damping * np.eye(2))
-        links = ((link, damping),) if self.given.damping else ()
-        return Parts(links=links, ports=((self.signal, link, BallForce(self.rings)),))
+        links = [(link, damping)] if self.given.damping else []
+        if (tilt := self.tilt) is not None:
+            links.append((self.link(site, COORDINATES), tilt))
+        ports = ((name, link, BallForce(row)) for name, (_, row) in zip(self.signals, self.rows, strict=True))
+        return Parts(links=tuple(links), ports=tuple(ports))
 
     def plan_line(self, site: Site) -> Line:
         return self.line
@@ -415,7 +424,8 @@ class BallBearingElement(MachineElement):
     def faults(self) -> list[Fault]:
         """An axial load that takes the preload away."""
         constant, square = self.thrust
-        left = self.rings.rows * (self.rings.preload or 0.0) + constant
+        rows = 1 if self.given.arrangement in OPPOSED else self.rings.rows
+        left = rows * (self.rings.preload or 0.0) + constant
         least = min(left, left + square * self.top**2)
         if self.given.locating is None or least > 0.0:
             return []
@@ -435,7 +445,10 @@ class BallBearingElement(MachineElement):
         preload = f"preload {display(rings.preload, 'N')} by a spring" if rings.preload else "rings held along the axis"
         if given.locating is not None:
             preload += f", and the axial load to the {given.locating}"
-        return "bearings", value, f"Hertz contacts, centrifugal force of the balls, {angle}, {preload}; {LEFT_OUT}"
+        friction = "" if BallForce(rings).brakes else "friction, "
+        reason = f"Hertz contacts, centrifugal force of the balls, {angle}, {preload}"
+        tilt = "" if self.tilt is not None else "moments of the rings and "
+        return "bearings", value, f"{reason}; {friction}{tilt}{LEFT_OUT}"
 
 
 def _thrust(case: Case, bearing: BallBearingKeys) -> tuple[float, float]:

@@ -115,7 +115,9 @@ class BallNumbers(NamedTuple):
     centres where it touches; k_inner, k_outer: of the contacts, N/m^1.5; centrifugal: force of a ball over the square
     of the speed of the shaft, N s^2; held: 1 if the rings are held along the axis, else 0; preload: on all rows in N,
     or, of rings that are held, their axial displacement; cage: its speed over the shaft's, 0 for the mean over its
-    angle; thrust: what an axial load adds to the preload, over the square of the speed of the shaft, N s^2. """
+    angle; thrust: what an axial load adds to the preload, over the square of the speed of the shaft, N s^2; split: of
+    the deflection of both contacts in series, the share of the inner one; turn_cos, turn_sin: of the angle between
+    places; load_friction, viscous_friction, least_friction: of ball_friction, in m, N m s^(2/3) and N m."""
 
     points: int
     share: float
@@ -130,30 +132,36 @@ class BallNumbers(NamedTuple):
     preload: float
     cage: float
     thrust: float
+    split: float
+    turn_cos: float
+    turn_sin: float
+    load_friction: float
+    viscous_friction: float
+    least_friction: float
 
 
 def ball_numbers(numbers: Array) -> BallNumbers:
-    """The bearing whose numbers (13,) are in an array."""
+    """The bearing whose numbers (19,) are in an array."""
     return BallNumbers(
         int(numbers[0]), numbers[1], numbers[2], numbers[3], numbers[4], numbers[5], numbers[6], numbers[7], numbers[8],
-        numbers[9], numbers[10], numbers[11], numbers[12],
+        numbers[9], numbers[10], numbers[11], numbers[12], numbers[13], numbers[14], numbers[15],
+        numbers[16], numbers[17], numbers[18],
     )  # fmt: skip
 
 
-def of_balls(of: BallNumbers, omega: float) -> tuple[float, float, float]:
-    """What all balls have alike: the share of the inner contact in the deflection of both in series, the centrifugal
-    force in N at omega rad/s, and how far off the outer groove's centre a ball rests on the outer ring alone, m."""
-    i, o = of.k_inner ** (-2.0 / 3.0), of.k_outer ** (-2.0 / 3.0)
+def of_balls(of: BallNumbers, omega: float) -> tuple[float, float]:
+    """What all balls have alike at omega rad/s: the centrifugal force in N, and how far off the outer groove's centre a
+    ball rests on the outer ring alone, m."""
     centrifugal = of.centrifugal * omega * omega
-    return i / (i + o), centrifugal, of.outer + (centrifugal / of.k_outer) ** (2.0 / 3.0)
+    return centrifugal, of.outer + (centrifugal / of.k_outer) ** (2.0 / 3.0)
 
 
 def ball(
-    of: BallNumbers, a: float, r: float, share: float, centrifugal: float, rest: float, memory: Array, at: int
+    of: BallNumbers, a: float, r: float, centrifugal: float, rest: float, memory: Array, at: int
 ) -> tuple[float, float, float, float, float]:
     """A ball at rest between the centres of the outer groove, (0, 0), and of the inner one, (a, r), in m.
 
-    share, centrifugal, rest: see of_balls. memory: from place `at` on a, r, u, v of a ball at rest near by, and the
+    centrifugal, rest: see of_balls. memory: from place `at` on a, r, u, v of a ball at rest near by, and the
     derivatives of u and v by a and r, u_a, u_r, v_a, v_r; zeros if not known. The values of this ball are left there.
 
     Returns the force (a, r) in N with which the inner ring presses on the ball, and its derivative (aa, ar, rr) by the
@@ -173,8 +181,8 @@ def ball(
     v = memory[at + 3] + memory[at + 6] * by_a + memory[at + 7] * by_r
     outside = u * u + v * v > outer * outer
     if not outside:
-        u, v = _near(of, a, r, length, share, centrifugal)
-    step_u = step_v = f_a = f_r = s_aa = s_ar = s_rr = h_uu = h_uv = h_vv = determinant = 0.0
+        u, v = _near(of, a, r, length, centrifugal)
+    step_u = step_v = f_a = f_r = s_aa = s_ar = s_rr = h_uu = h_uv = h_vv = inverse = 0.0
     least, size = math.inf, 1.0
     for _ in range(STEPS):
         t_u, t_v = u + step_u, v + step_v
@@ -183,34 +191,37 @@ def ball(
         d_i, d_o = max(l_i - inner, 0.0), max(l_o - outer, 0.0)
         root_i, root_o = k_inner * math.sqrt(d_i), k_outer * math.sqrt(d_o)
         q_i, q_o = root_i * d_i, root_o * d_o
-        m_a, m_r, n_a, n_r = i_a / l_i, i_r / l_i, t_u / l_o, t_v / l_o
+        by_i, by_o = 1.0 / l_i, 1.0 / l_o
+        m_a, m_r, n_a, n_r = i_a * by_i, i_r * by_i, t_u * by_o, t_v * by_o
         g_u, g_v = q_o * n_a - q_i * m_a, q_o * n_r - q_i * m_r - centrifugal
-        missed = math.sqrt(g_u * g_u + g_v * g_v)
+        missed = g_u * g_u + g_v * g_v
         if (missed >= least or d_i + d_o <= 0.0) and size > SMALLEST:
             size, step_u, step_v = 0.5 * size, 0.5 * step_u, 0.5 * step_v
             if outside:  # what is known does not help
-                u, v = _near(of, a, r, length, share, centrifugal)
+                u, v = _near(of, a, r, length, centrifugal)
                 outside, least, size, step_u, step_v = False, math.inf, 1.0, 0.0, 0.0
             continue
         u, v, least, size, f_a, f_r = t_u, t_v, missed, 1.0, q_i * m_a, q_i * m_r
-        along, across = 1.5 * root_i, q_i / l_i
+        along, across = 1.5 * root_i, q_i * by_i
         s_aa = along * m_a * m_a + across * m_r * m_r
         s_ar = (along - across) * m_a * m_r
         s_rr = along * m_r * m_r + across * m_a * m_a
-        along, across = 1.5 * root_o, q_o / l_o
+        along, across = 1.5 * root_o, q_o * by_o
         h_uu = s_aa + along * n_a * n_a + across * n_r * n_r
         h_uv = s_ar + (along - across) * n_a * n_r
         h_vv = s_rr + along * n_r * n_r + across * n_a * n_a
         determinant = h_uu * h_vv - h_uv * h_uv
         if determinant <= 0.0:
             return _alone(a, r, rest, memory, at)
-        step_u = -(h_vv * g_u - h_uv * g_v) / determinant
-        step_v = -(h_uu * g_v - h_uv * g_u) / determinant
-        if missed <= NEAR * (q_i + q_o + centrifugal):
+        inverse = 1.0 / determinant
+        step_u = -(h_vv * g_u - h_uv * g_v) * inverse
+        step_v = -(h_uu * g_v - h_uv * g_u) * inverse
+        near = NEAR * (q_i + q_o + centrifugal)
+        if missed <= near * near:
             break
     # the derivative with the ball eliminated: S - S H^-1 S
-    u_a, v_a = (h_vv * s_aa - h_uv * s_ar) / determinant, (h_uu * s_ar - h_uv * s_aa) / determinant
-    u_r, v_r = (h_vv * s_ar - h_uv * s_rr) / determinant, (h_uu * s_rr - h_uv * s_ar) / determinant
+    u_a, v_a = (h_vv * s_aa - h_uv * s_ar) * inverse, (h_uu * s_ar - h_uv * s_aa) * inverse
+    u_r, v_r = (h_vv * s_ar - h_uv * s_rr) * inverse, (h_uu * s_rr - h_uv * s_ar) * inverse
     memory[at], memory[at + 1], memory[at + 2], memory[at + 3] = a, r, u + step_u, v + step_v
     memory[at + 4], memory[at + 5], memory[at + 6], memory[at + 7] = u_a, u_r, v_a, v_r
     return (
@@ -227,16 +238,16 @@ def _alone(a: float, r: float, v: float, memory: Array, at: int) -> tuple[float,
     return 0.0, 0.0, 0.0, 0.0, 0.0
 
 
-def _near(of: BallNumbers, a: float, r: float, length: float, share: float, centrifugal: float) -> tuple[float, float]:
+def _near(of: BallNumbers, a: float, r: float, length: float, centrifugal: float) -> tuple[float, float]:
     """u, v in m of a ball near its equilibrium, which it touches with both contacts. length: from (0, 0) to (a, r).
 
     The contacts pull like a rope between the groove centres that the ball pushes aside by w: it is longer by
-    excess + bend w^2 / 2, and bears the share of the centrifugal force across it. Newton's method from above, where it
+    excess + bend w^2 / 2, and bears the part of the centrifugal force across it. Newton's method from above, where it
     descends to w. The ball then lies at the distances from both centres that belong to its contacts' forces.
     """
     inner, outer, k_inner, k_outer = of.inner, of.outer, of.k_inner, of.k_outer
     excess, bend = length - inner - outer, 1.0 / inner + 1.0 / outer
-    both, across, w = k_inner * share * math.sqrt(share), centrifugal * abs(a) / length, 0.0
+    both, across, w = k_inner * of.split * math.sqrt(of.split), centrifugal * abs(a) / length, 0.0
     if across > 0.0:
         w = math.sqrt(math.sqrt(across / (both * bend * 0.5 * bend * math.sqrt(0.5 * bend))))
         if excess > 0.0:
@@ -249,7 +260,7 @@ def _near(of: BallNumbers, a: float, r: float, length: float, share: float, cent
             w -= (root * longer * w - across) / (root * (longer + 1.5 * bend * w * w))
     longer = max(excess + 0.5 * bend * w * w, 0.0)
     pressed = both * longer * math.sqrt(longer) + centrifugal * max(r, 0.0) / length
-    l_o, l_i = outer + (pressed / k_outer) ** (2.0 / 3.0), inner + share * longer
+    l_o, l_i = outer + (pressed / k_outer) ** (2.0 / 3.0), inner + of.split * longer
     if l_o + l_i <= length:
         return l_o * a / length, l_o * r / length
     along = 0.5 * (l_o * l_o - l_i * l_i + length * length) / length
@@ -265,14 +276,20 @@ def rings(
 
     omega: of the shaft, rad/s; cage: its angle, rad. memory: see ball_bearing_force.
     """
-    share, centrifugal, rest = of_balls(of, omega)
-    a = of.axial + d_z
-    turn = 2.0 * math.pi / of.points
-    c, s, turn_c, turn_s = math.cos(BELOW + cage), math.sin(BELOW + cage), math.cos(turn), math.sin(turn)
+    centrifugal, rest = of_balls(of, omega)
+    return _around(of, d_x, d_y, d_z, math.cos(BELOW + cage), math.sin(BELOW + cage), centrifugal, rest, memory)
+
+
+def _around(
+    of: BallNumbers, d_x: float, d_y: float, d_z: float, c: float, s: float, centrifugal: float, rest: float,
+    memory: Array,
+) -> tuple[float, float, float, float, float, float, float, float, float]:  # fmt: skip
+    """See rings; c, s: cosine and sine of the angle of the first ball; centrifugal, rest: see of_balls."""
+    a, turn_c, turn_s = of.axial + d_z, of.turn_cos, of.turn_sin
     f_x = f_y = f_z = k_xx = k_xy = k_yy = k_xz = k_yz = k_zz = 0.0
     for j in range(of.points):
         r, at = of.radial + d_x * c + d_y * s, RINGS + KNOWN * j
-        q_a, q_r, aa, ar, rr = ball(of, a, r, share, centrifugal, rest, memory, at)
+        q_a, q_r, aa, ar, rr = ball(of, a, r, centrifugal, rest, memory, at)
         f_x, f_y, f_z = f_x + q_r * c, f_y + q_r * s, f_z + q_a
         k_xx, k_xy, k_yy = k_xx + rr * c * c, k_xy + rr * c * s, k_yy + rr * s * s
         k_xz, k_yz, k_zz = k_xz + ar * c, k_yz + ar * s, k_zz + aa
@@ -300,8 +317,9 @@ def ball_bearing_force(
     d_z = memory[0] + memory[3] * (d_x - memory[1]) + memory[4] * (d_y - memory[2])
     low, high, last, reach = -math.inf, math.inf, math.inf, REACH
     preload = of.preload + of.thrust * omega * omega
+    (centrifugal, rest), c, s = of_balls(of, omega), math.cos(BELOW + cage), math.sin(BELOW + cage)
     for _ in range(STEPS):
-        f_x, f_y, f_z, xx, xy, yy, xz, yz, zz = rings(of, d_x, d_y, d_z, omega, cage, memory)
+        f_x, f_y, f_z, xx, xy, yy, xz, yz, zz = _around(of, d_x, d_y, d_z, c, s, centrifugal, rest, memory)
         missed = f_z - preload
         step = reach if missed < 0.0 else -reach
         if zz > 0.0 and abs(missed) < zz * reach:
@@ -318,6 +336,27 @@ def ball_bearing_force(
     x, y = (xz / zz, yz / zz) if zz > 0.0 else (0.0, 0.0)
     memory[0], memory[1], memory[2], memory[3], memory[4] = d_z + step, d_x, d_y, -x, -y
     return -f_x - xz * step, -f_y - yz * step, xx - x * xz, xy - x * yz, xy - x * yz, yy - y * yz
+
+
+def ball_friction(of: BallNumbers, omega: float, memory: Array) -> tuple[float, float]:
+    """Torque in N m on the shaft at omega rad/s with the balls that the last call has left in the memory, and by how
+    much it falls with the speed.
+
+    Palmgren (Harris, chapter 14): M_1 = f_1 D F with the sum F of the loads of the balls at the inner ring, and of the
+    lubricant M_0 = 0.1 f_0 D^3 (nu n)^(2/3), SI but for nu in mm^2/s and n in rpm, at least 16 f_0 D^3. A rotor of free
+    speed turns forwards: as a constant load, they brake it until it stands.
+    """
+    loads, viscous, speed = 0.0, of.least_friction, abs(omega)
+    for j in range(of.points):
+        at = RINGS + KNOWN * j
+        along, out = memory[at] - memory[at + 2], memory[at + 1] - memory[at + 3]
+        depth = max(math.sqrt(along * along + out * out) - of.inner, 0.0)
+        loads += of.k_inner * depth * math.sqrt(depth)
+    turning = of.viscous_friction * speed ** (2.0 / 3.0)
+    grip = 0.0
+    if turning > viscous:
+        viscous, grip = turning, 2.0 / 3.0 * turning / speed
+    return -(viscous + of.load_friction * of.share * loads), grip
 
 
 MICROMETRE = 1e-6

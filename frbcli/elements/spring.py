@@ -2,7 +2,8 @@
 
 With the displacement r = |d| and the depth e = r - gap > 0 the force along d is -N, N = k e + c e^3 + C e'; a stop does
 not pull, and rubs with mu N against the sliding u = R Omega + v_t of the surface of a shaft of the radius R, whose
-centre moves with v_t across d. A linear spring is part of the machine's matrices.
+centre moves with v_t across d. With R the friction has the torque -mu N R on the shaft, and the power mu N u is lost. A
+linear spring is part of the machine's matrices.
 """
 
 from __future__ import annotations
@@ -28,7 +29,9 @@ from frbcli.rotor.port import (
     D_Y,
     F_X,
     F_Y,
+    GRIP,
     SPEED,
+    TORQUE,
     V_X,
     V_XX,
     V_XY,
@@ -71,6 +74,11 @@ class SpringForce(ForceLaw):
             return given.gap
         return math.sqrt(0.5 * given.stiffness / given.cubic) if given.stiffness else SMALL
 
+    @property
+    def brakes(self) -> bool:  # type: ignore[override]
+        """See ForceLaw: friction with a known lever."""
+        return self.given.friction > 0.0 and self.given.radius is not None
+
     @staticmethod
     def force(numbers: Any, memory: Any, motion: Any, answer: Any) -> None:
         d_x, d_y, v_x, v_y = motion[D_X], motion[D_Y], motion[V_X], motion[V_Y]
@@ -105,6 +113,8 @@ class SpringForce(ForceLaw):
         w = pushed * rub_slope
         s = -w * approach / r  # v_t falls by r' over r as d turns
         answer[F_X], answer[F_Y] = -pushed * e_x, -pushed * e_y
+        lever = max(numbers[RADIUS], 0.0)
+        answer[TORQUE], answer[GRIP] = -lever * pushed * rub, lever * lever * w
         answer[XX] = -(e_x * n_dx + b_x * t_x + s * t_x * t_x)
         answer[XY] = -(e_x * n_dy + b_x * t_y + s * t_x * t_y)
         answer[YX] = -(e_y * n_dx + b_y * t_x + s * t_y * t_x)

@@ -98,7 +98,7 @@ DRIVE_SIGNALS = (
 )  # fmt: skip
 
 
-FRICTION_SIGNAL = Column("friction_torque", "N m", "braking torque of all films and contacts")
+FRICTION_SIGNAL = Column("friction_torque", "N m", "braking torque of films, contacts, stops and ball bearings")
 
 
 MACHINE_SIGNALS = (

@@ -34,7 +34,8 @@ WRONG = 1e-2  # share of the largest derivative by which a given one may differ 
 _NAME = re.compile("[a-z][a-z0-9-]{0,39}")
 ITERATIONS = 60  # of Newton's method; from half of them on its steps are halved
 D_X, D_Y, V_X, V_Y, SPEED, ANGLE, MOTION = range(7)  # what a force follows: m, m/s, rad/s and rad
-F_X, F_Y, XX, XY, YX, YY, V_XX, V_XY, V_YX, V_YY, ANSWER = range(11)  # force, derivatives by d (XX: dF_x / d_x) and v
+F_X, F_Y, XX, XY, YX, YY, V_XX, V_XY, V_YX, V_YY = range(10)  # force, derivatives by d (XX: dF_x / d_x) and v
+TORQUE, GRIP, ANSWER = range(10, 13)  # on the rotor about its axis in N m, and by how much it falls with the speed
 
 
 class PortForce(NamedTuple):
@@ -52,6 +53,7 @@ class ForceLaw(ABC):
 
     quantity: ClassVar[str] = ""  # with which the names of its signals begin, then the name of the element
     turns: ClassVar[bool] = False  # whether it depends on the angle of the rotor
+    brakes: ClassVar[bool] = False  # whether it has a torque on the rotor
     units: ClassVar[Mapping[str, str]] = {}  # of its fields in a case, e.g. "N/m"; others are plain numbers
 
     @property
@@ -115,7 +117,7 @@ def by_differences(push: Any, law: Any, length: float, motion: Any, answer: Any)
     STEP of the length, and of the velocity of a vibration of this size with the rotor."""
     d_x, d_y, v_x, v_y, omega = motion[D_X], motion[D_Y], motion[V_X], motion[V_Y], motion[SPEED]
     for i in range(ANSWER):
-        answer[i] = math.nan  # what is left where the function fails
+        answer[i] = math.nan if i < TORQUE else 0.0  # what is left where the function fails
     f_x, f_y = push(d_x, d_y, v_x, v_y, omega, law)
     for by in range(4):
         step = STEP * length * (1.0 if by < 2 else max(abs(omega), SLOW))
@@ -155,11 +157,11 @@ class Port:
             answer = evaluate(self.law, motion)
         else:
             answer = self.law.plainly(motion)
-        return PortForce(answer[:XX], answer[XX:V_XX].reshape(2, 2), answer[V_XX:].reshape(2, 2))
+        return PortForce(answer[:XX], answer[XX:V_XX].reshape(2, 2), answer[V_XX:TORQUE].reshape(2, 2))
 
     def along(self, q: Array, v: Array, omega: Array, angle: Array) -> tuple[Array, Array]:
-        """(k, 2) N on the first node by one element, at displacements q and velocities v (k, n), and (k, w) what the
-        law has left behind each."""
+        """(k, 3) N on the first node by one element and its torque on the rotor in N m, at displacements q and
+        velocities v (k, n), and (k, w) what the law has left behind each."""
         from frbcli.rotor.port_function import evaluate_along  # as above
 
         return evaluate_along(self.law, np.column_stack([q @ self.place.T, v @ self.place.T, omega, angle]))
@@ -314,7 +316,7 @@ def problem_of(law: ForceLaw) -> str:
     for motion in _motions(law):  # a force that has a corner at one of them is not wrong
         given, differences = law.plainly(motion), np.zeros(ANSWER)
         by_differences(_law_force, law, law.length, motion, differences)
-        off = [_off(given[part], differences[part]) for part in (slice(XX, V_XX), slice(V_XX, ANSWER))]
+        off = [_off(given[part], differences[part]) for part in (slice(XX, V_XX), slice(V_XX, TORQUE))]
         if max(off) <= WRONG:
             return ""
         worst = f"has derivatives that differ from the force's slopes by {100 * max(off):.2g} % at {_words(motion)}"

@@ -18,7 +18,7 @@ from numba.np.unsafe import ndarray
 
 from frbcli.arrays import Array
 from frbcli.compiled import address_of, c_function, call_of, compiled, jitted
-from frbcli.rotor.port import ANSWER, F_X, F_Y, MOTION, ForceLaw, by_differences, keys_of
+from frbcli.rotor.port import ANSWER, F_X, F_Y, MOTION, TORQUE, ForceLaw, by_differences, keys_of
 
 _POINTER = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
 _SIGNATURE = types.void(types.intp, types.intp, *[_POINTER] * 4)
@@ -57,9 +57,10 @@ def evaluate(law: ForceLaw, motion: Array) -> Array:
 
 
 def evaluate_along(law: ForceLaw, motions: Array) -> tuple[Array, Array]:
-    """(k, 2) N: the force of a law at motions (k, MOTION) that follow each other, and (k, w) what it has left."""
+    """(k, 3) force in N and torque in N m of a law at motions (k, MOTION) that follow each other, and (k, w) what it
+    has left."""
     address, memory = address_of(compiled_force(type(law))), law.memory.copy()
-    forces, left = np.empty((len(motions), 2)), np.empty((len(motions), len(memory)))
+    forces, left = np.empty((len(motions), 3)), np.empty((len(motions), len(memory)))
     _forces(address, law.parameters, memory, np.ascontiguousarray(motions), np.zeros(ANSWER), forces, left)
     return forces, left
 
@@ -82,7 +83,7 @@ def _forces(
         # what a law leaves lies an iteration behind its force: again, so that it does not depend on where it began
         for _ in range(2 if len(memory) > 0 else 1):
             call_force(address, len(numbers), len(memory), numbers, memory, motions[k], answer)
-        forces[k, 0], forces[k, 1] = answer[F_X], answer[F_Y]
+        forces[k, 0], forces[k, 1], forces[k, 2] = answer[F_X], answer[F_Y], answer[TORQUE]
         for i in range(len(memory)):
             left[k, i] = memory[i]
 

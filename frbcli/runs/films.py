@@ -28,10 +28,11 @@ from frbcli.film.cells.film import Motion, turned
 from frbcli.film.rectangles.end_flow import EndFlow, end_flows
 from frbcli.film.roughness.asperities import rub_along, wear_along
 from frbcli.results import store
+from frbcli.results.columns import FRICTION_SIGNAL
 from frbcli.rotor.assembly import PLANE, LinearRotor, unbalance_shares
 from frbcli.rotor.loads import loads_at
 from frbcli.runs.header import FLOW, FORCE, FRICTION, POWER, SHARE, THICKNESS, TORQUE, signal_names, tilt_names
-from frbcli.runs.inputs import FilmNumbers, Rotation, friction_signal, unchanged
+from frbcli.runs.inputs import FilmNumbers, Rotation, brakes, friction_of_films, unchanged
 from frbcli.runs.record.restored import WrongCheckpoint, array
 from frbcli.scene.machine.system import System
 from frbcli.solve.stage.forces import felt_motion, touches
@@ -106,7 +107,9 @@ def film_signals(
         flows = _flows(system, films, samples)
         if ends:
             flows = _flows_of_motions(system, films, control, samples, ends)
-        signals |= friction_signal(system, torques)
+    if brakes(system):
+        of_films = friction_of_films(system, torques) if system.names else 0.0
+        signals[FRICTION_SIGNAL.name] = of_films + _friction_at_ports(system, samples)
     for i, name in enumerate(system.names):
         for kind in kinds:
             if kind == FORCE:
@@ -117,6 +120,15 @@ def film_signals(
                 known = {POWER: powers, TORQUE: torques, FLOW: flows, SHARE: shares, FRICTION: summits[..., 3]}
                 signals[signal_names(kind, name)[0]] = known[kind][:, i]
     return signals
+
+
+def _friction_at_ports(system: System, samples: Samples) -> Array:
+    """(k,) the torque with which forces that are not linear brake the rotor."""
+    torque, angle = np.zeros(len(samples.times)), samples.rotation.states[2]
+    for port in system.rotor.ports:
+        if port.law.brakes:
+            torque -= port.count * port.along(samples.q, samples.v, samples.rotation.speeds, angle)[0][:, len(PLANE)]
+    return torque
 
 
 def port_signals(system: System, samples: Samples) -> dict[str, Array]:
@@ -185,7 +197,7 @@ def film_forces(rotor: LinearRotor, samples: Samples) -> Array:
     if rotor.loads:
         left = left - loads_at(rotor.loads, rotor.size, np.asarray(samples.times), angle)
     for port in rotor.ports:
-        left = left - port.count * port.along(samples.q, samples.v, omega, angle)[0] @ port.place
+        left = left - port.count * port.along(samples.q, samples.v, omega, angle)[0][:, : len(PLANE)] @ port.place
     rows = rotor.journals.reshape(-1, rotor.size) * np.repeat(rotor.multiplicity, 2)[:, None]
     return np.asarray((left @ np.linalg.pinv(rows)).reshape(len(a), len(rotor.journals), 2), dtype=np.float64)
 

@@ -362,15 +362,14 @@ def drive_units(system: System) -> dict[str, str]:
 
 
 def brakes(system: System) -> bool:
-    """Whether a run records the torque with which films brake a rotor whose speed is free: films that follow its tilt
-    are not noted."""
-    return system.rotation is not None and bool(system.names) and system.films.stations == 1
+    """Whether a run records the torque with which films and ports brake a rotor whose speed is free: films that follow
+    its tilt are not noted."""
+    if system.rotation is None or (system.names and system.films.stations > 1):
+        return False
+    return bool(system.names) or any(port.law.brakes for port in system.rotor.ports)
 
 
-def friction_signal(system: System, torques: Array) -> dict[str, Array]:
-    """The torque (k,) with which all films brake a rotor whose speed is free; torques: (k, films) on the journals of
-    one bearing each."""
-    if system.rotation is None:
-        return {}
+def friction_of_films(system: System, torques: Array) -> Array:
+    """(k,) the torque with which all films brake a rotor; torques: (k, films) on the journals of one bearing each."""
     on_rotor = (system.bodies[:, 0] < 0) & (system.turning[:, SLIP, 0] > 0.0)
-    return {FRICTION_SIGNAL.name: -torques @ (system.rotor.multiplicity * on_rotor)}
+    return np.asarray(-torques @ (system.rotor.multiplicity * on_rotor))

@@ -137,7 +137,7 @@ class March:
         self._output = LoopOutput(self._q, self._v, self._oil, self._heat.buffer(rows))
         # In addition to the motion, if the run records more of the films than follows from it: see solve/time_loop.py.
         self._watches = self._inputs.limited or any(kind in OF_THE_STEPS for kind in recorded(case))
-        self._watches |= brakes(system)
+        self._watches |= brakes(system) and bool(system.names)
         notes = system.rotor.size + NOTES * len(system.names) if self._watches else 0
         self._noted, self._out_noted = np.full(notes, np.nan), np.empty((rows, notes))
         # States at some fixed output times, at which the films are solved again and runs compared.

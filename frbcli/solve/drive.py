@@ -3,7 +3,9 @@
 - an empty tuple: the rotor turns as its speed profile says, and nothing is computed;
 - DrivenRotor: its rotation is one more degree of freedom, which a stage solves with the rings,
 
-      J alpha = torque(omega, t) - load(omega) + friction of the films + internal damping + reaction of the whirl.
+      J alpha = torque(omega, t) - load(omega) + friction + internal damping + reaction of the whirl,
+
+  with the friction of films, stops and ball bearings.
 
 Which of them a function means is decided by the type of the drive when the loop is compiled, as in heat.py.
 
@@ -25,12 +27,14 @@ from typing import Any, NamedTuple
 
 from frbcli.arrays import Array
 from frbcli.compiled import by_types, compiled, compiled_for, type_of
+from frbcli.rotor import port
 from frbcli.solve.scratch import Scratch, rotation
 from frbcli.solve.stage.equations import CORRECTION, E_COS, E_GYROSCOPIC, E_SIN, FREE, LATE, U_0, Q, V
+from frbcli.solve.stage.forces import Ports
 from frbcli.solve.state import RUNNING, SLIP, STANDSTILL, STEP, TIME, RotorData
 
 CONSTANT, LINEAR, SQUARE = range(3)  # parts of the load
-# Of a stage: its acceleration, speed and angle, torque of the films and by how much it falls with the speed
+# Of a stage: its acceleration, speed and angle, torque of all friction and by how much it falls with the speed
 ALPHA, OMEGA, ANGLE, FRICTION, GRIP, NOW = range(6)
 
 
@@ -166,12 +170,25 @@ def begin_pull(drive: DrivenRotor) -> None:
 
 
 @compiled_for(DrivenRotor)
+def brake(drive: DrivenRotor, on_rotor: float, grip: float) -> None:
+    """Add a torque in N m on the rotor, and by how much it falls with the speed."""
+    drive.now[FRICTION] += on_rotor
+    drive.now[GRIP] += grip
+
+
+@compiled_for(DrivenRotor)
 def pull(drive: DrivenRotor, rotor: RotorData, f: int, on_journal: float, grip: float) -> None:
     """Add the torque in N m that film f puts on its journal, and by how much that falls with the speed of the journal,
     where the journal is of the rotor."""
     if rotor.ring_of[f, 0] < 0 and rotor.turning[f, SLIP, 0] > 0.0:
-        drive.now[FRICTION] += rotor.multiplicity[f] * on_journal
-        drive.now[GRIP] += rotor.multiplicity[f] * grip
+        brake(drive, rotor.multiplicity[f] * on_journal, rotor.multiplicity[f] * grip)
+
+
+@compiled_for(Ports)
+def brake_at_ports(ports: Ports, drive: Any) -> None:
+    """Let the friction at the ports brake a rotor whose speed is free, see drive.py."""
+    for k in range(ports.lengths.shape[0]):
+        brake(drive, ports.counts[k] * ports.answers[k, port.TORQUE], ports.counts[k] * ports.answers[k, port.GRIP])
 
 
 @compiled_for(DrivenRotor, 0.0)

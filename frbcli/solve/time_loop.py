@@ -22,7 +22,7 @@ from frbcli.film.cells.balance.balances import FILLING
 from frbcli.film.cells.balance.grid_motion import level
 from frbcli.film.cells.balance.side_flow import side_flow
 from frbcli.film.cells.data import PASSED
-from frbcli.solve.drive import end_of_turning, overshoots, stage_rotation, turn_on, turns_freely
+from frbcli.solve.drive import brake_at_ports, end_of_turning, overshoots, stage_rotation, turn_on, turns_freely
 from frbcli.solve.films.forces import drag_integral, left_over, solved
 from frbcli.solve.films.steps import (
     accept_films,
@@ -241,6 +241,7 @@ def _solve_stage(
             left = max(left, g * late / _smallest(clearances, rotor.ports))
             if spins.shape[0] > 0 or turns_freely(rotor.drive):
                 left = max(left, spin_up(films, work, rotor, s, g, control, scratch, rings))
+                brake_at_ports(rotor.ports, rotor.drive)
                 left = max(left, turn_on(rotor.drive, rotor, t, t_s, s, g, rings.bodies, rings.angles, scratch))
                 if turns_freely(rotor.drive):
                     speed = rings.bodies[0]

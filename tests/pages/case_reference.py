@@ -53,6 +53,7 @@ TABLES = {
     '[bearing] kind = "ball"': "BallBearingKeys",
     "ball_material, ring_material = {...}": "RollingMaterial",
     "preload = {offset}": "AxialOffset",
+    "friction = {...}": "BallFriction",
     "[[thrust_bearing]]": "ThrustBearing",
     "[axial]": "Axial",
     "load = {...} of [axial]": "LoadAtSpeed",

@@ -13,6 +13,7 @@ import frbcli
 from frbcli.case.reading.load import case_from_dict
 from frbcli.cli.runs.transient import exit_code
 from frbcli.elements.collar import collar_of
+from frbcli.elements.spring import STICKS
 from frbcli.errors import InputError
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import CYCLES, LADDER, RUN
@@ -245,3 +246,90 @@ def test_a_thrust_bearing_brakes_a_coasting_rotor(tmp_path: Path) -> None:
     assert run["speed_Hz"][-1] < 600.0
     rest = collar.rest(TURN * run["speed_Hz"][-1])
     assert run["thrust_film_thickness_m"][-1] == pytest.approx(rest.gap, rel=1e-3)
+
+
+# A rotor of free speed that rubs in a stop, and one on ball bearings whose friction is known
+STOP, GAP, MU, RADIUS = 5e6, 30e-6, 0.15, 0.02  # N/m at each of two journals together, m, m
+RUBS = {
+    "rotor": {"kind": "rigid", "mass": "2 kg", "gravity": 0.0, "unbalance": "2e-4 kg*m",
+              "polar_inertia": "5e-4 kg*m^2"},
+    "bearing": {"kind": "coefficients", "stiffness": "5e5 N/m", "damping": "150 N*s/m"},
+    "spring": [{"at": "journal", "stiffness": f"{0.5 * STOP!r} N/m", "gap": f"{GAP!r} m", "friction": MU,
+                "radius": f"{RADIUS!r} m"}],
+    "drive": {"start": "100 Hz", "duration": "0.1 s", "reaction": True},
+    "accuracy": {"tolerance": 1e-8},
+}  # fmt: skip
+
+
+def test_a_stop_takes_from_the_rotation_what_its_friction_loses(tmp_path: Path) -> None:
+    """Against an integration in which the energy of motion, rotation and springs falls by dampers and sliding alone:
+    with mu N against u = R omega + v_t the stop takes mu N u."""
+    mass, stiffness, damping, unbalance, inertia = 2.0, 1e6, 300.0, 2e-4, 5e-4
+
+    def rate(_: float, state: np.ndarray) -> np.ndarray:
+        q, angle, v, omega = state[:2], state[2], state[3:5], state[5]
+        s, c = math.sin(angle), math.cos(angle)
+        r = float(np.hypot(*q))
+        n = q / max(r, 1e-300)
+        t = np.array([-n[1], n[0]])
+        pushed = STOP * max(r - GAP, 0.0)
+        sliding = RADIUS * omega + t @ v
+        rub = MU * math.tanh(sliding / STICKS)
+        force = -stiffness * q - damping * v - pushed * (n + rub * t)
+        matrix = np.array([[mass, 0.0, -unbalance * c], [0.0, mass, -unbalance * s],
+                           [-unbalance * c, -unbalance * s, inertia]])  # fmt: skip
+        right = [force[0] - unbalance * omega**2 * s, force[1] + unbalance * omega**2 * c, -RADIUS * rub * pushed]
+        lost = damping * v @ v + rub * pushed * sliding
+        return np.concatenate([v, [omega], np.linalg.solve(matrix, right), [lost]])
+
+    begin = np.array([0.0, 0.0, 0.0, 0.0, 0.0, TURN * 100.0, 0.0])
+    end = solve_ivp(rate, (0.0, 0.1), begin, "DOP853", rtol=1e-11, atol=1e-14, max_step=1e-4).y[:, -1]
+    q, v, omega = end[:2], end[3:5], end[5]
+    arm = np.array([math.cos(end[2]), math.sin(end[2])])
+    beyond = max(float(np.hypot(*q)) - GAP, 0.0)
+    energy = 0.5 * (mass * v @ v + stiffness * q @ q + inertia * omega**2 + STOP * beyond**2)
+    energy -= unbalance * omega * arm @ v
+    first = 0.5 * inertia * begin[5] ** 2
+    assert energy + end[6] == pytest.approx(first, rel=1e-6)
+    assert end[6] > 0.1 * first
+    run = frbcli.runup(case_from_dict(RUBS, "rubs"), tmp_path / "run.h5")
+    assert TURN * run["speed_Hz"][-1] == pytest.approx(omega, rel=1e-6)
+    assert run["friction_torque_N_m"].max() > 0.1
+
+
+BALLS = {"kind": "ball", "balls": 9, "ball_diameter": "4 mm", "pitch_diameter": "20 mm", "contact_angle": "20 deg",
+         "preload": "80 N", "damping": "100 N*s/m"}  # fmt: skip
+
+
+def on_balls(friction: dict[str, object], start: str, duration: str, **bearing: object) -> frbcli.Case:
+    data = {"rotor": MACHINE["rotor"] | {"polar_inertia": "4e-5 kg*m^2"},
+            "bearing": BALLS | {"friction": friction} | bearing,
+            "drive": {"start": start, "duration": duration}}  # fmt: skip
+    return case_from_dict(data, "balls")
+
+
+@pytest.mark.parametrize("rows", ["single", "tandem"])
+def test_loaded_balls_brake_a_rotor_until_it_stands(rows: str, tmp_path: Path) -> None:
+    """Both bearings by f_1 D F, F = Fa / sin(alpha) on each row at low speeds: omega falls linearly."""
+    run = frbcli.runup(on_balls({"f1": 8e-4}, "40 Hz", "3 s", arrangement=rows), tmp_path / "run.h5")
+    loads = 80.0 / math.sin(run["ball_contact_angle_rad"][-1]) * (1 if rows == "single" else 2)
+    braked = 2.0 * 8e-4 * 0.02 * loads
+    assert run.status == "standstill"
+    assert run["friction_torque_N_m"][-1] == pytest.approx(braked, rel=1e-6)
+    assert run.t_end_s == pytest.approx(4e-5 * TURN * 40.0 / braked, rel=1e-3)  # centrifugal forces relieve the balls
+    gone = cumulative_simpson(run["friction_torque_N_m"] * TURN * run["speed_Hz"], x=run["time_s"])[-1]
+    assert gone == pytest.approx(0.5 * 4e-5 * (TURN * 40.0) ** 2, rel=1e-6)
+
+
+def test_a_lubricant_brakes_balls_with_the_two_thirds_power_of_the_speed(tmp_path: Path) -> None:
+    """Palmgren's M_0 = 1e-7 f_0 (nu n)^(2/3) D^3, N mm of mm^2/s, rpm, mm: the cube root of the speed falls evenly."""
+    run = frbcli.runup(on_balls({"f0": 1.5, "viscosity": "20 mm^2/s"}, "800 Hz", "1 s"), tmp_path / "run.h5")
+    at_start = 1e-3 * 1e-7 * 1.5 * (20.0 * 60.0 * 800.0) ** (2.0 / 3.0) * 20.0**3  # N m of one bearing
+    fall = 2.0 * at_start / 4e-5 / (TURN * 800.0) / 3.0  # 1/s
+    np.testing.assert_allclose(run["speed_Hz"], 800.0 * (1.0 - fall * run["time_s"]) ** 3, rtol=1e-6)
+
+
+@pytest.mark.parametrize("friction", [{"f0": 1.0}, {"f1": 1e-3, "viscosity": "20 cSt"}])
+def test_friction_of_a_lubricant_needs_both_of_its_numbers(friction: dict[str, object]) -> None:
+    with pytest.raises(InputError, match="viscosity"):
+        on_balls(friction, "40 Hz", "1 s")

@@ -18,6 +18,7 @@ from frbcli.case.rotor import OF_SECTIONS
 from frbcli.units import ANGLE, NUMBER, SPEED, display
 
 CURVATURES = tuple((key, BallBearingKeys.model_fields[key].default) for key in ("inner_curvature", "outer_curvature"))
+OPPOSED = ("face-to-face", "back-to-back")
 GIVEN = ("stiffness", "damping", "mass")
 REMEDY = "Remove it, or add a bearing with a film."
 # Keys that say how films are computed, recorded or touched.
@@ -46,6 +47,7 @@ def element_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
         if bearing.get("kind") == "ball":
             yield from _balls(path, bearing)
             yield from _locating((*path, "locating"), bearing, data)
+            yield from _row_distance((*path, "row_distance"), bearing, data)
         for body in ("damper", "support"):
             yield from _body((*path, body), bearing.get(body), data)
     if has_films(data):
@@ -95,6 +97,10 @@ def _balls(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
         problem = "is given with radial_clearance, from which it follows." if angle else "is missing."
         yield Breach((*path, "contact_angle"), problem, 'Keep one: contact_angle = "15 deg", or radial_clearance.')
     yield from _preload(path, bearing, angle)
+    friction = table(bearing, "friction")
+    if bool(number(friction, "f0", NUMBER)) != ("viscosity" in friction):
+        problem = "has no effect without f0." if "viscosity" in friction else "is missing; the friction by f0 needs it."
+        yield Breach((*path, "friction", "viscosity"), problem, 'Give both, e.g. f0 = 1, viscosity = "20 mm^2/s".')
     ball, pitch = (number(bearing, key, "m") for key in ("ball_diameter", "pitch_diameter"))
     balls = bearing.get("balls")
     if ball is None or pitch is None or not isinstance(balls, int) or balls < 3:
@@ -108,6 +114,22 @@ def _balls(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
     if way is not None and inner is not None and outer is not None and way >= 2.0 * (inner + outer - 1.0) * ball:
         problem = f"is {display(way, 'm')}: the balls leave grooves of these curvatures."
         yield Breach((*path, "radial_clearance"), problem, 'Write e.g. radial_clearance = "10 um".')
+
+
+def _row_distance(path: Path, bearing: Mapping[str, Any], data: Mapping[str, Any]) -> Iterator[Breach]:
+    """Rows that hold the shaft in tilt lie next to each other, and lean against each other."""
+    distance, ball = number(bearing, "row_distance", "m"), number(bearing, "ball_diameter", "m")
+    if distance is None:
+        return
+    if bearing.get("arrangement", "single") not in OPPOSED:
+        problem = "is of two rows that are face to face or back to back."
+        yield Breach(path, problem, 'Remove it, or write e.g. arrangement = "back-to-back".')
+    if ball is not None and distance < ball:
+        problem = f"is {display(distance, 'm')}: balls of {display(ball, 'm')} in both rows overlap."
+        yield Breach(path, problem, "Give the distance between the middles of both rows.")
+    if "rotor" in data and table(data, "rotor").get("kind") not in OF_SECTIONS:
+        remedy = 'Remove it, or write rotor.kind = "turbocharger" with [[shaft]] sections.'
+        yield Breach(path, "has no effect: a symmetric rotor does not tilt.", remedy)
 
 
 def _preload(path: Path, bearing: Mapping[str, Any], angle: bool) -> Iterator[Breach]:
@@ -128,9 +150,6 @@ def _locating(path: Path, bearing: Mapping[str, Any], data: Mapping[str, Any]) -
     if not number(bearing, "preload", "N"):
         problem = "needs a preload by a spring, to which the axial load is added."
         yield Breach(path, problem, 'Write e.g. preload = "50 N", or remove it.')
-    if bearing.get("arrangement", "single") in ("face-to-face", "back-to-back"):
-        problem = "is of a pair whose rows carry an axial load in opposite directions."
-        yield Breach(path, problem, "Write the two rows as two bearings of one row, of which one is locating.")
     if "rotor" in data and table(data, "rotor").get("kind") not in OF_SECTIONS:
         problem = "is of a symmetric rotor, whose two bearings are equal, and one of them carries the axial load."
         yield Breach(path, problem, 'Write rotor.kind = "turbocharger" with [[shaft]] sections and both bearings.')

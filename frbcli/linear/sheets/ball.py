@@ -1,4 +1,14 @@
-"""The sheet of ball bearings over speed and load: where the rings rest, what the balls bear, stiffness, life."""
+"""The sheet of ball bearings over speed and load: where the rings rest, what the balls bear, stiffness, life.
+
+ISO/TS 16281 (basic reference rating life), which is L10 = (C / P)^3 of ISO 281 for the distribution of loads that ISO
+281 assumes: with gamma = d cos(alpha) / D, i rows of Z balls and
+
+    rho = 1.044 ((1 - gamma) / (1 + gamma))^1.72 (f_i / f_o (2 f_o - 1) / (2 f_i - 1))^0.41
+    Q_ci = C / (0.407 Z (i cos alpha)^0.7) (1 + rho^(10/3))^0.3
+    Q_ce = C / (0.389 Z (i cos alpha)^0.7) (1 + rho^(-10/3))^0.3
+
+a ring that turns bears the cubic mean of the loads, one that stands their mean with the power 10/3.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +22,8 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.columns import Table, Tabular, table_of
-from frbcli.elements.ball import BallBearingElement, RestingRings, rating_life, under_load
+from frbcli.elements.ball import BallBearing, BallBearingElement, Balls, RestingRings, at_displacement
+from frbcli.elements.ball_force import BallNumbers, ball_bearing_force
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.linear.columns import BALL_SHEET
@@ -117,6 +128,11 @@ def ball_bearing_sheet(
     if not elements:
         problem = "is missing: the case has no ball bearing."
         raise InputError(case.name or "case", (Fault("bearing", "", None, problem, 'Add one of kind = "ball".'),))
+    for element in elements:
+        if len(element.rows) > 1:
+            problem = "loads one row of an opposed pair: its sheet would be of two different rows."
+            remedy = "Remove it for the sheet, and give each row's preload instead."
+            raise InputError(case.name or "case", (Fault(f"{element.key}.locating", "", None, problem, remedy),))
     speeds = sorted(_speeds(case) if speeds_Hz is None else speeds_Hz)
     carried = None if loads else _Carried(case)
     points: list[BallState] = []
@@ -153,7 +169,7 @@ class _Carried:
         q = at_rest.at_rest.position.displacements
         ports = {port.name: port for port in at_rest.system.rotor.ports}
         for element in elements:
-            force = ports[element.signal].at(q, np.zeros_like(q), omega).force
+            force = sum((ports[name].at(q, np.zeros_like(q), omega).force for name in element.signals), np.zeros(2))
             yield _state(element, -force, speed)
 
 
@@ -203,3 +219,73 @@ def _speeds(case: Case) -> list[float]:
         return [top * share / SPEEDS for share in range(1, SPEEDS + 1)]
     problem, remedy = "is missing.", 'Give --speed, e.g. --speed "900 Hz", or add [speed].'
     raise InputError(case.name or "case", (Fault("speed", "", None, problem, remedy),))
+
+
+SETTLED, CARRIED = 1e-12, 1e-6  # of the load: what is left over at rest, and where steps no longer help
+STEPS = 80
+FIRST = 1e-6  # m, beyond which the place along a load's line is sought
+
+
+def under_load(bearing: BallBearing, load: Array, omega: float, cage: float = 0.0) -> RestingRings:
+    """The bearing under a load (2,) in N on the inner ring, at omega rad/s and an angle of the cage in rad.
+
+    Newton's method on the displacement, from where the ring carries the load along its line; a step is halved until the
+    imbalance falls. Raises NotConverged.
+    """
+    of, memory, size = bearing.numbers, bearing.memory, float(np.linalg.norm(load))
+    place = np.zeros(2) if size == 0.0 else _along(of, memory, load / size, size, omega, cage)
+    step, least = np.zeros(2), math.inf
+    for _ in range(STEPS):
+        x, y = (place + step).tolist()
+        f_x, f_y, *k = ball_bearing_force(of, x, y, omega, cage, memory)
+        missed = load + np.array([f_x, f_y])
+        left = float(np.linalg.norm(missed))
+        if left >= least:
+            step *= 0.5
+            continue
+        place, least = place + step, left
+        stiffness = np.reshape(k, (2, 2))
+        # along what carries nothing, as a ring within its clearance, it stays
+        step = np.linalg.lstsq(stiffness, missed, rcond=1e-12)[0]
+        if left <= SETTLED * size:
+            break
+    if least <= CARRIED * size:
+        return at_displacement(bearing, place, omega, cage)
+    raise NotConverged(f"A ball bearing does not carry {size:.4g} N: {least:.3g} N are left.")
+
+
+def _along(of: BallNumbers, memory: Array, line: Array, size: float, omega: float, cage: float) -> Array:
+    """(2,) place in m on a line at which the force against it is as large as the load."""
+    low, high = 0.0, FIRST
+
+    def carried(way: float) -> float:
+        x, y = (way * line).tolist()
+        f_x, f_y, *_ = ball_bearing_force(of, x, y, omega, cage, memory)
+        return -float(line @ [f_x, f_y])
+
+    while carried(high) < size:
+        low, high = high, 2.0 * high
+        if high > of.radial:
+            raise NotConverged(f"A ball bearing does not carry {size:.4g} N within its grooves.")
+    for _ in range(30):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if carried(middle) < size else (low, middle)
+    return high * line
+
+
+STANDING, TURNING, WEIBULL = 10.0 / 3.0, 3.0, 0.9
+
+
+def rating_life(bearing: BallBearing, balls: Balls, rating: float) -> float:
+    """L10 in revolutions under the loads of the balls of each row; rating: C of the whole bearing in N. Infinite
+    without a load."""
+    gamma, f_i, f_o = bearing.gamma, bearing.inner, bearing.outer
+    grooves = f_i / f_o * (2.0 * f_o - 1.0) / (2.0 * f_i - 1.0)
+    rho = 1.044 * ((1.0 - gamma) / (1.0 + gamma)) ** 1.72 * grooves**0.41
+    each = rating / (bearing.balls * (bearing.rows * math.cos(bearing.contact_angle)) ** 0.7)
+    inner = each / 0.407 * (1.0 + rho**STANDING) ** 0.3
+    outer = each / 0.389 * (1.0 + rho**-STANDING) ** 0.3
+    bears_inner = float(np.mean(balls.inner_load**TURNING)) ** (1.0 / TURNING)
+    bears_outer = float(np.mean(balls.outer_load**STANDING)) ** (1.0 / STANDING)
+    damage = bearing.rows * ((bears_inner / inner) ** STANDING + (bears_outer / outer) ** STANDING)
+    return 1e6 * damage**-WEIBULL if damage > 0.0 else math.inf

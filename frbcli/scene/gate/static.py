@@ -254,9 +254,14 @@ def other_cycle_heat_faults(case: Case) -> Iterator[Fault]:
 
 
 def turning_port_faults(case: Case) -> Iterator[Fault]:
-    """Forces that are not linear have no angle of their own: no whirl returns to it after one period."""
-    problem = "turns with the rotor: the force depends on its angle, and no whirl returns after one period."
-    yield from port_faults(case, problem, 'Write cage = "mean", or take a run.', lambda law: law.turns)
+    """Forces that follow the angle of the rotor: balls that pass shake the machine at their own frequency, and a cage
+    turns by no rational share of the revolutions of the rotor, so that nothing repeats, with unbalance neither."""
+    problem = (
+        "follows the angle of the rotor: balls that pass shake it at the ball pass frequency, so that there is no "
+        "limit cycle; with unbalance, no period holds both frequencies."
+    )
+    remedy = 'Write cage = "mean", the mean over the angles of the cage, or take a run.'
+    yield from port_faults(case, problem, remedy, lambda law: law.turns)
 
 
 def smooth_faults(case: Case) -> Iterator[Fault]:

@@ -141,7 +141,7 @@ def element_forces(
 
     def force(parts: Parts) -> NDArray[np.complex128]:
         total = np.zeros(2, dtype=np.complex128)
-        for link, part in parts.links:
+        for link, part in (each for each in parts.links if each[0].sees == PLANE):
             stiffness, damping, mass = part.at(omega)
             total -= (stiffness + 1j * frequency * damping - frequency**2 * mass) @ motion(link)
         for name, link, _ in parts.ports:
@@ -174,11 +174,13 @@ def element_faults(case: Case) -> list[Fault]:
 
 
 def element_springs(case: Case, omega: float) -> Array:
-    """(e,) N/m of each bearing without a film at omega rad/s, then N m of a collar that is held in tilt: the mean of
-    the direct stiffness of both directions, as far as it holds the shaft; cross-coupling, damping and mass are left
-    out."""
-    parts = (element.linear for element in elements_of(case))
-    stiffness = (part.at(omega)[0] for part in parts if part is not None)
+    """(e,) N/m of each bearing without a film at omega rad/s, then N m of a collar that is held in tilt, and of rows of
+    balls: the mean of the direct stiffness of both directions, as far as it holds the shaft; cross-coupling, damping
+    and mass are left out."""
+    parts = [element.linear for element in elements_of(case)]
+    stiffness = [part.at(omega)[0] for part in parts if part is not None]
+    tilts = (element.tilt for element in BallBearingElement.of(case))
+    stiffness += [part.at(omega)[0][len(PLANE) :, len(PLANE) :] for part in tilts if part is not None]
     return np.array([max(0.5 * float(np.trace(each)), 0.0) for each in stiffness])
 
 

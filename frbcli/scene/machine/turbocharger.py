@@ -15,6 +15,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from frbcli.arrays import Array
+from frbcli.case.elements import BallBearingKeys
 from frbcli.case.rotor import (
     Disk,
     JeffcottRotor,
@@ -60,8 +61,8 @@ FREQUENCIES = 3  # bending modes that are shown
 @dataclass(frozen=True)
 class FreeShaft:
     """A shaft in its free modes. modes: all of each plane; reduced: the modes of its body; journals: places of all
-    bearings, films first; wheels: its disks; collars: places that are held in tilt; bow: what bends it without load,
-    None of a straight one."""
+    bearings, films first; wheels: its disks; collars: places that are held in tilt, of thrust bearings, then of rows
+    of balls; bow: what bends it without load, None of a straight one."""
 
     modes: FreeModes
     reduced: Reduction
@@ -79,6 +80,11 @@ class FreeShaft:
     def held(self) -> Array:
         """(b, n) displacements of the modes at the bearings, then their slopes at the collars."""
         return self._held(self.modes)
+
+    @property
+    def nodes(self) -> tuple[Journal, ...]:
+        """The collars that are nodes: rows of balls hold the journal of their bearing."""
+        return tuple(each for each in self.collars if each.name == COLLAR)
 
     def reduced_on(self, springs: Array, top: float) -> Reduction:
         """The reduction with its changes on springs (b,) in N/m of the bearings, up to the speed `top` in rad/s."""
@@ -156,13 +162,13 @@ class TurbochargerShaft(Shaft):
         rotor, free = self.rotor, self.free()
         modes = free.reduced.modes
         damping = rotor.modal_damping, rotor.external_damping
-        return turbocharger_rotor(modes, free.wheels, free.journals, *damping, rotor.gravity, free.collars, free.bow)
+        return turbocharger_rotor(modes, free.wheels, free.journals, *damping, rotor.gravity, free.nodes, free.bow)
 
     def undamped_body(self) -> Body:
         free = self.free()
         none = np.zeros_like(free.modes.internal)
         undamped = replace(free.modes, internal=none, damping=none)
-        return turbocharger_rotor(undamped, free.wheels, free.journals, 0.0, 0.0, 0.0, free.collars)
+        return turbocharger_rotor(undamped, free.wheels, free.journals, 0.0, 0.0, 0.0, free.nodes)
 
     def free(self) -> FreeShaft:
         """See Shaft. Raises InputError where masses and stiffnesses differ by too many powers of ten for its modes."""
@@ -175,11 +181,13 @@ class TurbochargerShaft(Shaft):
         bearings = (*case.bearings, *case.elements)
         journals = tuple(Journal(bearing.name, bearing.position or 0.0) for bearing in bearings)
         acting = case.thrust_bearings if case.axial is not None else ()
-        collars = tuple(Journal(COLLAR, each.position or 0.0) for each in acting)
+        collars = [Journal(COLLAR, each.position or 0.0) for each in acting]
+        pairs = (each for each in case.elements if isinstance(each, BallBearingKeys) and each.row_distance is not None)
+        collars += [Journal(each.name, each.position or 0.0) for each in pairs]
         top = 0.0 if speed is None else 2.0 * math.pi * max(abs(speed.start), abs(speed.end))
         asked = (rotor.modes, rotor.cutoff, case.accuracy.target)
         try:
-            return _free_shaft(sections, self._wheels, journals, collars, bow_places(case), top, asked)
+            return _free_shaft(sections, self._wheels, journals, tuple(collars), bow_places(case), top, asked)
         except NotConverged as error:
             problem = f"is no shaft whose motion can be computed. {error}"
             remedy = "Check the orders of magnitude of its sections and of the masses of [[disk]]."

@@ -29,14 +29,10 @@ from frbcli.film.contact_gap import ELASTIC_LIMIT, closes_freely_until, contact_
 from frbcli.film.roughness.asperities import APART, Asperities, Rub, rub
 from frbcli.rotor.loads import Harmonic, Load, Tabulated
 from frbcli.rotor.port import (
-    ANGLE,
     ANSWER,
-    D_X,
     F_X,
     F_Y,
     MOTION,
-    SPEED,
-    V_X,
     V_XX,
     V_XY,
     V_YX,
@@ -323,8 +319,9 @@ def turn_cones(
 
 class Ports(NamedTuple):
     """The k ports of a machine. addresses: (k,) of their laws; places: (k, 2, n) and counts (k,), see Port; lengths:
-    (k,) m; first: (k + 1, 2) of the parameters and memories of each in numbers and memory; motion, answer: of the call
-    of a law; missed: (2 k,) by how much the forces differ from those that Newton's method has used, N."""
+    (k,) m; first: (k + 1, 2) of the parameters and memories of each in numbers and memory; motions (k, MOTION), answers
+    (k, ANSWER): of the last call of each law, NaN before it; turned: speed and angle of the rotor; missed: (2 k,) by
+    how much the forces differ from those that Newton's method has used, N."""
 
     addresses: Indices
     places: Array
@@ -333,8 +330,9 @@ class Ports(NamedTuple):
     first: Indices
     numbers: Array
     memory: Array
-    motion: Array
-    answer: Array
+    motions: Array
+    answers: Array
+    turned: Array
     missed: Array
 
 
@@ -352,8 +350,9 @@ def make_ports(ports: Sequence[Port]) -> Ports | tuple[()]:
         np.concatenate([np.zeros((1, 2), dtype=np.int64), np.cumsum(sizes, axis=0)]),
         np.concatenate([law.parameters for law in laws]),
         np.concatenate([law.memory for law in laws]),
-        np.zeros(MOTION),
-        np.zeros(ANSWER),
+        np.full((len(ports), MOTION), math.nan),
+        np.zeros((len(ports), ANSWER)),
+        np.zeros(2),
         np.zeros(2 * len(ports)),
     )
 
@@ -370,17 +369,23 @@ def shortest(ports: Ports) -> float:
 @compiled_for(Ports)
 def turn_ports(ports: Ports, speed: float, angle: float) -> None:
     """Speed in rad/s and angle of the rotor in a stage."""
-    ports.motion[SPEED], ports.motion[ANGLE] = speed, angle
+    ports.turned[0], ports.turned[1] = speed, angle
 
 
 @compiled()
 def _ask(ports: Ports, k: int, x: int, g: float, journal: Array) -> None:
-    """The answer of port k, whose motion is columns x and x + 1 of the journal, at the velocities U."""
-    for i in range(2):
-        ports.motion[D_X + i] = journal[X_0, x + i] + g * journal[U, x + i]
-        ports.motion[V_X + i] = journal[U, x + i]
+    """The answer of port k, whose motion is columns x and x + 1 of the journal, at the velocities U. What left_at_ports
+    has asked for last is what an iteration begins with, so that a law is called for what is new alone."""
+    v_x, v_y, motion, known = journal[U, x], journal[U, x + 1], ports.motions[k], True
+    d_x, d_y = journal[X_0, x] + g * v_x, journal[X_0, x + 1] + g * v_y
+    now = d_x, d_y, v_x, v_y, ports.turned[0], ports.turned[1]  # in the order of a motion
+    for i in range(MOTION):
+        known = known and now[i] == motion[i]
+        motion[i] = now[i]
+    if known:
+        return
     (a, c), (b, d) = (ports.first[k, 0], ports.first[k, 1]), (ports.first[k + 1, 0], ports.first[k + 1, 1])
-    call_force(ports.addresses[k], b - a, d - c, ports.numbers[a:b], ports.memory[c:d], ports.motion, ports.answer)
+    call_force(ports.addresses[k], b - a, d - c, ports.numbers[a:b], ports.memory[c:d], motion, ports.answers[k])
 
 
 @compiled_for(Ports)
@@ -388,7 +393,7 @@ def push_ports(ports: Ports, films: int, g: float, journal: Array) -> None:
     """Fill FORCE, BY_X, BY_Y of the ports, which follow so many films."""
     for k in range(ports.lengths.shape[0]):
         x = 2 * (films + k)
-        y, out = x + 1, ports.answer
+        y, out = x + 1, ports.answers[k]
         _ask(ports, k, x, g, journal)
         journal[FORCE, x], journal[FORCE, y] = out[F_X], out[F_Y]
         journal[BY_X, x], journal[BY_Y, x] = out[V_XX] + g * out[XX], out[V_XY] + g * out[XY]
@@ -403,7 +408,7 @@ def left_at_ports(ports: Ports, clearances: Array, compliance: Array, g: float, 
     for k in range(ports.lengths.shape[0]):
         _ask(ports, k, 2 * (films + k), g, journal)
         for i in range(2):
-            ports.missed[2 * k + i] = ports.answer[F_X + i] - journal[FORCE, 2 * (films + k) + i]
+            ports.missed[2 * k + i] = ports.answers[k, F_X + i] - journal[FORCE, 2 * (films + k) + i]
     for i in range(compliance.shape[0]):
         moved, length = 0.0, clearances[i // 2] if i < 2 * films else ports.lengths[i // 2 - films]
         for j in range(ports.missed.shape[0]):

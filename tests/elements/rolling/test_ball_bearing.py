@@ -9,8 +9,9 @@ import pytest
 from ball_bearings import STEEL, A, B
 from paths import DATA
 
-from frbcli.elements.ball import BallBearing, at_displacement, rating_life, under_load
+from frbcli.elements.ball import BallBearing, at_displacement
 from frbcli.elements.ball_force import ball_bearing_force, solve_plain
+from frbcli.linear.sheets.ball import rating_life, under_load
 
 BEARINGS = {"A": A, "B": B}
 # independent program: Hertz contacts by elliptic integrals, centrifugal force of the balls, no friction, no gyroscopic

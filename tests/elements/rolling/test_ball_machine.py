@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,11 +11,12 @@ import numpy as np
 import pytest
 from marches import Result, control, march, start
 from scipy.integrate import quad
+from scipy.optimize import brentq
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict
-from frbcli.elements.ball import BallBearingElement, BallForce
-from frbcli.elements.ball_force import solve_plain
+from frbcli.elements.ball import BallBearing, BallBearingElement, BallForce, at_displacement, row_in_tilt
+from frbcli.elements.ball_force import RINGS, ball, of_balls, solve_plain
 from frbcli.errors import InputError
 from frbcli.linear.sheets.ball import ball_bearing_sheet
 from frbcli.linear.stability import stability
@@ -23,7 +25,7 @@ from frbcli.rotor.port import ANSWER
 from frbcli.rotor.port_function import evaluate, evaluate_along
 from frbcli.runs.run import runup
 from frbcli.scene.gate.gate import faults
-from frbcli.scene.gate.rule import CYCLES, RUN
+from frbcli.scene.gate.rule import CYCLES, RUN, SPEED_CYCLES
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 
@@ -216,3 +218,119 @@ def test_an_axial_load_that_no_ball_bearing_carries_is_a_fault(settings: dict[st
     with pytest.raises(InputError) as raised:
         frbcli.stability(frbcli.load_case("turbocharger-ball").with_settings(settings), speeds_Hz=[1000.0])
     assert key in [fault.key for fault in raised.value.faults]
+
+
+# A rotor of one steel shaft, which an opposed pair of rows holds in its middle
+LENGTH, RADIUS, APART = 0.04, 0.01, 0.008  # m
+MASS = 7850.0 * math.pi * RADIUS**2 * LENGTH
+
+
+def on_a_pair(arrangement: str, **more: Any) -> frbcli.Case:
+    bearing, tables = {**A, "arrangement": arrangement, "row_distance": f"{APART} m"}, dict[str, Any]()
+    for key, value in more.items():
+        (tables if key == "axial" else bearing)[key] = value
+    data = {
+        "rotor": {"kind": "turbocharger", "gravity": 0.0},
+        "shaft": [{"length": f"{LENGTH} m", "diameter": f"{2.0 * RADIUS} m", "youngs_modulus": "4e12 Pa"}],
+        "bearing": [
+            {"kind": "ball", "name": "pair", "position": f"{0.5 * LENGTH} m", **bearing},
+            {"kind": "coefficients", "name": "loose", "position": "1 mm", "stiffness": "1 N/m"},
+        ],
+        "speed": {"from": "1 Hz", "to": "1 Hz", "duration": "0.1 s"},
+    }  # fmt: skip
+    return case_from_dict(data | tables, "pair")
+
+
+def moment_of_a_row(row: BallBearing, place: float, sense: float, omega: float, slope: float) -> tuple[float, float]:
+    """Force across and moment that hold a ring at a slope about y, by the whole rotation of its grooves, with the axial
+    displacement at which the balls carry the preload."""
+    of = row.numbers
+    centrifugal, rest = of_balls(of, omega)
+    psi = TURN * np.arange(row.balls) / row.balls
+    across = 0.5 * row.pitch_diameter + of.inner * math.cos(row.contact_angle)
+    along = place + sense * of.inner * math.sin(row.contact_angle)
+    x, z = across * np.cos(psi), np.full(row.balls, along)
+    s, c = math.sin(slope), math.cos(slope)
+    moved = np.array([x * c + z * s - x, -x * s + z * c - z])
+    turning = np.array([-x * s + z * c, -x * c - z * s])  # by the slope
+
+    def pressed(w: float) -> np.ndarray:
+        memory = row.memory
+        return np.array([ball(of, of.axial + w + sense * dz, of.radial + dx * math.cos(angle), centrifugal, rest,
+                              memory, RINGS)[:2] for dx, dz, angle in zip(*moved, psi, strict=True)])  # fmt: skip
+
+    assert row.preload is not None
+    w = brentq(lambda w: pressed(w)[:, 0].sum() - row.preload, -2e-5, 4e-5, xtol=1e-16)
+    q_a, q_r = pressed(w).T
+    force = q_r * np.cos(psi)
+    return float(force.sum()), float((force * turning[0] + sense * q_a * turning[1]).sum())
+
+
+@pytest.mark.parametrize("omega", [0.0, TURN * 2500.0])
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_row_in_tilt_has_the_slope_of_its_moment(sense: float, omega: float) -> None:
+    (element,) = BallBearingElement.of(on_balls(A))
+    row, place, step = replace(element.rings, turning=False), -0.5 * APART, 1e-6
+    above, below = (np.array(moment_of_a_row(row, place, sense, omega, each)) for each in (step, -step))
+    np.testing.assert_allclose(row_in_tilt(row, place, sense, omega), (above - below) / (2.0 * step), rtol=1e-5)
+
+
+def whirls(case: frbcli.Case) -> np.ndarray:
+    """Natural frequencies in rad/s, hardly turning."""
+    (point,) = stability(case, [1.0]).points
+    return np.sort(point.eigenvalues.imag[point.eigenvalues.imag > 0.0])
+
+
+@pytest.mark.parametrize("arrangement", ["back-to-back", "face-to-face"])
+def test_an_opposed_pair_holds_the_shaft_in_tilt(arrangement: str) -> None:
+    """Without speed a row holds the shaft where its contacts meet the axis, but for what its preload turns: 2 k l^2
+    with the distance l of this point from the middle, D / 2 tan(alpha) beyond the row back to back."""
+    (element,) = BallBearingElement.of(on_a_pair(arrangement))
+    rest = at_displacement(replace(element.rings, turning=False), np.zeros(2), 0.0)
+    sense = 1.0 if arrangement == "back-to-back" else -1.0
+    lever = 0.5 * APART + sense * 0.5 * element.rings.pitch_diameter * math.tan(rest.balls.inner_angle[0])
+    assert element.tilt is not None
+    tilt = element.tilt.stiffness[0, 2, 2]
+    size = 0.5 * element.rings.pitch_diameter
+    assert tilt == pytest.approx(rest.stiffness[0, 0] * lever**2, abs=0.02 * rest.stiffness[0, 0] * size**2)
+    inertia = MASS * (3.0 * RADIUS**2 + LENGTH**2) / 12.0
+    expected = np.sort([math.sqrt(rest.stiffness[0, 0] / MASS)] * 2 + [math.sqrt(tilt / inertia)] * 2)
+    np.testing.assert_allclose(whirls(on_a_pair(arrangement))[:4], expected, rtol=5e-3)
+
+
+@pytest.mark.parametrize(("arrangement", "locating", "end"), [
+    ("back-to-back", "right", "left"), ("face-to-face", "right", "right"), ("back-to-back", "left", "right"),
+])  # fmt: skip
+def test_one_row_of_an_opposed_pair_carries_the_axial_load(arrangement: str, locating: str, end: str) -> None:
+    """Pushed to the right, the left row back to back is pressed; the other one keeps the force of its spring."""
+    push = "40 N" if locating == "right" else "-40 N"
+    case = on_a_pair(arrangement, locating=locating, axial={"load": push})
+    (element,) = BallBearingElement.of(case)
+    assert [name for name in element.signals if name.endswith(end)] == [f"ball_force_pair_{end}"]
+    pressed = dict(element.rows)
+    loads = {name: row.numbers.preload for name, row in pressed.items()}
+    assert loads == {end: 100.0, "left" if end == "right" else "right": 60.0}
+    both = [at_displacement(replace(row, turning=False), np.zeros(2), 0.0).stiffness[0, 0] for row in pressed.values()]
+    coupled = element.tilt
+    assert coupled is not None
+    inertia = MASS * (3.0 * RADIUS**2 + LENGTH**2) / 12.0
+    k, force, moment = sum(both), coupled.stiffness[0, 0, 3], coupled.stiffness[0, 3, 3]
+    plane = np.linalg.eigvals(np.array([[k / MASS, force / MASS], [force / inertia, moment / inertia]]))
+    np.testing.assert_allclose(whirls(case)[:4], np.sort(np.repeat(np.sqrt(plane.real), 2)), rtol=5e-3)
+
+
+@pytest.mark.parametrize(("changed", "problem"), [
+    ({"arrangement": "tandem"}, "face to face or back to back"), ({"row_distance": "3 mm"}, "overlap"),
+])  # fmt: skip
+def test_rows_that_cannot_hold_a_shaft_in_tilt_are_refused(changed: dict[str, Any], problem: str) -> None:
+    given = {"arrangement": "back-to-back", **changed}
+    with pytest.raises(InputError, match=problem):
+        on_a_pair(**given)
+    with pytest.raises(InputError, match="does not tilt"):
+        on_balls({**A, "arrangement": "back-to-back", "row_distance": "8 mm"})
+
+
+def test_balls_that_pass_leave_no_limit_cycle() -> None:
+    (told,) = [fault for fault in faults(on_balls(A, LOAD), SPEED_CYCLES) if fault.key == "bearing"]
+    assert "ball pass frequency" in told.problem
+    assert 'cage = "mean"' in told.remedy
