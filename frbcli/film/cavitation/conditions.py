@@ -18,7 +18,7 @@ from typing import Any, Self
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.film.cavitation.law import Cell, CellState, FilmOil, Key, Law, Numbers, Scales, source_at_edge
+from frbcli.film.cavitation.law import Cell, CellState, FilmOil, Key, Law, Numbers, Scales, slopes_at_edge
 
 
 @dataclass(frozen=True)
@@ -98,9 +98,9 @@ class Reynolds(Law):
             source_slope=-scales.reference * through * (1.0 - near),
         )
 
-    def edge_source(self, pressure: Array, scales: Scales, rate: Array, through: Array) -> Array:
-        """See Law.edge_source."""
-        return source_at_edge(pressure - scales.cavitation, rate, through)
+    def edge_slopes(self, pressure: Array, scales: Scales, rate: Array, through: Array) -> tuple[Array, Array]:
+        """See Law.edge_slopes."""
+        return slopes_at_edge(pressure - scales.cavitation, 0.0, rate, through)
 
     @staticmethod
     def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:

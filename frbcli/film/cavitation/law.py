@@ -184,9 +184,9 @@ class Law:
         film/cells/cavity_edge.py."""
         return state
 
-    def edge_source(self, pressure: Array, scales: Scales, rate: Array, through: Array) -> Array:
-        """Sources for scaled gauge pressures of cells next to the edge of the cavity, see `edged`."""
-        return np.zeros_like(pressure)
+    def edge_slopes(self, pressure: Array, scales: Scales, rate: Array, through: Array) -> tuple[Array, Array]:
+        """Derivatives by rate and through of the sources of cells with scaled gauge pressures, see `edged`."""
+        return np.zeros_like(pressure), np.zeros_like(pressure)
 
     def curve(self, ratio: Array) -> Array | None:
         """theta at p / p_cav (n,), of a law whose pressures are scaled with p_cav; None where theta does not follow
@@ -210,10 +210,21 @@ class Law:
         return replace(self, **dict(zip(names, values, strict=True)))  # type: ignore[type-var]
 
 
+def place_of_edge(above: Array, rate: Array, through: Array) -> Array:
+    """s in [0, 1]: how far behind the middle of a cell the cavity begins, over the cell, where the pressure is by
+    `above` larger than in the cavity: s^2 = above / (A L^2 / (2 H^3)), see film/cells/cavity_edge.py."""
+    most = 0.5 * np.maximum(rate, 0.0) / through
+    return np.asarray(np.sqrt(np.clip(np.divide(above, most, out=np.ones_like(above), where=most > 0.0), 0.0, 1.0)))
+
+
 def source_at_edge(above: Array, rate: Array, through: Array) -> Array:
-    """Source of a cell whose pressure is by `above` larger than in the cavity, which begins s < 1 cells behind its
-    middle: A (1 - s)^2 / 2 with s^2 = above / (A L^2 / (2 H^3)), see film/cells/cavity_edge.py."""
-    opens = np.maximum(rate, 0.0)
-    most = 0.5 * opens / through
-    place = np.sqrt(np.clip(np.divide(above, most, out=np.ones_like(above), where=most > 0.0), 0.0, 1.0))
-    return np.asarray(0.5 * opens * (1.0 - place) ** 2)
+    """Source A (1 - s)^2 / 2 of a cell, see place_of_edge."""
+    return np.asarray(0.5 * np.maximum(rate, 0.0) * (1.0 - place_of_edge(above, rate, through)) ** 2)
+
+
+def slopes_at_edge(above: Array, by_rate: Array | float, rate: Array, through: Array) -> tuple[Array, Array]:
+    """Derivatives of source_at_edge by rate and through; by_rate: that of `above`."""
+    s, opens = place_of_edge(above, rate, through), np.maximum(rate, 0.0)
+    left = np.divide(1.0 - s, s, out=np.zeros_like(s), where=s > 0.0)
+    fall = by_rate - np.divide(above, opens, out=np.zeros_like(above), where=opens > 0.0)
+    return 0.5 * (1.0 - s) ** 2 - left * through * fall, -left * above

@@ -9,7 +9,17 @@ from typing import Any, Self
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.film.cavitation.law import Cell, CellState, FilmOil, Key, Law, Numbers, Scales, source_at_edge
+from frbcli.film.cavitation.law import (
+    Cell,
+    CellState,
+    FilmOil,
+    Key,
+    Law,
+    Numbers,
+    Scales,
+    slopes_at_edge,
+    source_at_edge,
+)
 
 PREFACTOR = 0.01  # a of (3.31)
 # By which sources are divided in the unknown, 1/s: about what a cell passes on per unit of pressure, of those 48 around
@@ -106,11 +116,16 @@ class Penalty(Law):
             source_slope=np.where(more, steep * state.pressure_slope, state.source_slope),
         )
 
-    def edge_source(self, pressure: Array, scales: Scales, rate: Array, through: Array) -> Array:
-        """See Law.edge_source."""
+    def edge_slopes(self, pressure: Array, scales: Scales, rate: Array, through: Array) -> tuple[Array, Array]:
+        """See Law.edge_slopes: the law's own source does not follow the gap, the cavity's pressure does."""
         exponent = -self.steepness * (pressure - scales.cavitation)
         own = self.prefactor * np.exp(np.clip(exponent, NOTHING, -NOTHING))
-        return np.asarray(np.maximum(own, source_at_edge(self._above_cavity(pressure, scales, rate)[0], rate, through)))
+        above, weight = self._above_cavity(pressure, scales, rate)
+        least = self.prefactor * math.exp(NOTHING)
+        sinks = np.where(rate > least, 1.0 / (self.steepness * np.maximum(rate, least)), 0.0)
+        more = source_at_edge(above, rate, through) > own
+        by_rate, by_through = slopes_at_edge(above, weight * sinks, rate, through)
+        return np.where(more, by_rate, 0.0), np.where(more, by_through, 0.0)
 
     def _above_cavity(self, pressure: Array, scales: Scales, rate: Array) -> tuple[Array, Array]:
         """Pressure from which s at the edge follows, and its derivative by the pressure. In a cavity the source makes

@@ -26,8 +26,6 @@ from frbcli.film.cells.data import Records
 from frbcli.film.cells.film import Motion, VolumeFilm
 from frbcli.film.gap import gap_rate
 
-NUDGE = 1e-6  # of the gap, and of the pace, for derivatives of smooth functions
-
 
 class GapRise(NamedTuple):
     """How the gap of a film opens. rate: (m, 1) A in 1/s; through: (m, 1) H^3 / L^2, what flows to the next cell for a
@@ -68,22 +66,15 @@ def set_edges(film: VolumeFilm, rise: GapRise, w: Array, states: Array) -> None:
 
 def edge_slopes(film: VolumeFilm, motion: Motion, pressure: Array) -> tuple[Array, Array]:
     """(m, k, 2) derivatives of the sources of cells with scaled gauge pressures (m, k) by displacement over the
-    clearance, and by its rate: both change how the gap opens, in which the sources are smooth."""
+    clearance, and by its rate: both change how the gap opens."""
     rise, phi, centre = gap_rise(film, motion), film.grid.phi, film.grid.centre
-
-    def slope(rate: Array | float, through: Array | float) -> Array:
-        """(m, k, 1) derivative by one of both; the nudge of the other is 0."""
-        ahead, behind = (
-            film.law.edge_source(pressure, film.scales, rise.rate + side * rate, rise.through + side * through)
-            for side in (1.0, -1.0)
-        )
-        return np.asarray((ahead - behind) / (2.0 * (rate + through)) * ~film.grid.fixed)[:, :, None]
 
     def sides(angles: Array) -> Array:
         """(n, 2) derivatives of H by the displacement."""
         return np.column_stack([np.sin(angles), -np.cos(angles)])
 
-    by_rate, by_through = slope(NUDGE * motion.rate, 0.0), slope(0.0, NUDGE * rise.through)
+    slopes = film.law.edge_slopes(pressure, film.scales, *rise)
+    by_rate, by_through = (np.where(film.grid.fixed, 0.0, each)[:, :, None] for each in slopes)
     carried = 0.5 * motion.omega * np.diff(sides(phi), axis=0) / np.diff(phi)[:, None]
     wider = 3.0 * rise.through / film.gap(motion.d, centre)[:, None] * sides(centre)
     by_place = by_rate * carried[:, None] + by_through * wider[:, None]

@@ -163,7 +163,8 @@ def film_alone(film: VolumeFilm) -> VolumeFilms:
 def _described(film: VolumeFilm, edges: bool) -> tuple[Any, ...]:
     """The record FILM of a film: all of it at once, for each field by itself takes as long as a film that is solved."""
     section, law, scale = film.section, film.law, film.section.pressure_scale
-    slopes, reaches = (of(film.grid.height, section.seals) for of in (end_slopes, end_reaches))
+    height, seals = film.grid.height, section.seals
+    slopes, reaches = end_slopes(height, seals), end_reaches(height, seals)
     grooves = 0.0, section.far_pressure / scale if section.far == "groove" else 0.0
     near, far = (
         (ENDS[kind], *slope, groove, reach)

@@ -115,7 +115,7 @@ def _followed_force(solver: FilmSolver, motion: Motion, w: Array) -> FilmForce |
         return None
     states, before = solver.states_at(motion, w), math.inf
     for _ in range(STEPS):
-        changes, by_changes = _newton_step(solver, motion, states, tilts=False)
+        changes, by_changes = film_changes(solver, motion, states)
         w = w + changes[:, :, 0]
         off = float(np.max(np.abs(changes[:, :, 0])) / np.max(np.abs(w)))
         if not off < before:
@@ -132,13 +132,13 @@ def settled_force(solver: FilmSolver, motion: Motion, solution: VolumeSolution) 
     if solution.filling < ALL:
         return _force_at_flow(solver, motion, solution)
     states = settled_states(solution)
-    return _force(solver, motion, states, solution.field, *_newton_step(solver, motion, states, tilts=False))
+    return _force(solver, motion, states, solution.field, *film_changes(solver, motion, states))
 
 
 def _force(
     solver: FilmSolver, motion: Motion, states: Array, field: Array, changes: Array, by_changes: Array
 ) -> FilmForce:
-    """Force and derivatives of a film with the states of its cells, see _newton_step."""
+    """Force and derivatives of a film with the states of its cells, see film_changes."""
     film, clearance, state = solver.film, solver.film.section.clearance, CellState(*states[:CARRIED_GAS])
     by_moved, by_moving, by_faster = np.split(by_changes, [2, 4], axis=1)
     followed = None
@@ -155,20 +155,11 @@ def _force(
     )
 
 
-def film_changes(
-    solver: FilmSolver, motion: Motion, solution: VolumeSolution, tilts: bool = False
-) -> tuple[Array, Array]:
-    """What changes with the displacement over the clearance, its rate, and omega_J + omega_S: the unknowns of a film
-    that a solver has settled, (m, k, 2 c + 1), and the c loads, (c, 2 c + 1) in N and N s. c: the 2 of the
-    displacement, or 4 with its growth over the width, to which moments over the width belong; tilts: whether that
-    counts."""
-    changes, by_changes = _newton_step(solver, motion, settled_states(solution), tilts)
-    return changes[:, :, 1:], by_changes
-
-
-def _newton_step(solver: FilmSolver, motion: Motion, states: Array, tilts: bool) -> tuple[Array, Array]:
-    """As film_changes, of a film with the states (STATES, m, k) of its cells; before the changes of the unknowns stands
-    their step of Newton's method, which is nothing in a settled film without memory."""
+def film_changes(solver: FilmSolver, motion: Motion, states: Array, tilts: bool = False) -> tuple[Array, Array]:
+    """What changes in a film with the states (STATES, m, k) of its cells: its unknowns, (m, k, 2 c + 2), by a step of
+    Newton's method, which is nothing in a settled film without memory, with the displacement over the clearance, its
+    rate, and omega_J + omega_S; and with these the c loads, (c, 2 c + 1) in N and N s. c: the 2 of the displacement, or
+    4 with its growth over the width, to which moments over the width belong; tilts: whether that counts."""
     film, data, (m, k) = solver.film, solver.data, states.shape[1:]
     own, ring, places, cells = data.films[0], data.ring[0], data.places[0], data.cells[0]
     stencil, net, by_place, by_rate, by_total = oil_slopes(own, ring, places, cells, states, motion, tilts)

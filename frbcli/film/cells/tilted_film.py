@@ -29,7 +29,7 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cells.block_cyclic import TILTED, ring_solver
 from frbcli.film.cells.data import TIGHTLY, Records, places_along, volume_films
 from frbcli.film.cells.film import Motion, Path, VolumeFilm, VolumeSolution
-from frbcli.film.cells.linearised import LinearFilm, film_at, film_changes, linear_cells, lying
+from frbcli.film.cells.linearised import LinearFilm, film_at, film_changes, linear_cells, lying, settled_states
 from frbcli.film.cells.loads import FilmLoads, GasBalance, OilBalance, Torque, pushed, pushing
 from frbcli.film.cells.mesh.grid import tilted_cells, volume_grid
 from frbcli.film.cells.solver import FilmSolver
@@ -263,14 +263,14 @@ def tilted_force(
     for number, land in enumerate(film.lands):
         motion, to_u = land.motion(place, rate, total), land.map / land.film.section.clearance
         solver, solution = _solved(land.film, motion, None if start is None else start[number])
-        changes, by_changes = film_changes(solver, motion, solution, tilts=True)
+        changes, by_changes = film_changes(solver, motion, settled_states(solution), tilts=True)
         by_u, by_v, by_total = np.split(by_changes, BY_TOTAL, axis=1)
         force += land.map.T @ _loads(land.film, solver.film.mean_pressure(solution.state))
         by_place += land.map.T @ by_u @ to_u
         by_rate += land.map.T @ by_v @ to_u
         spun += land.map.T @ by_total[:, 0]
         fields.append(solution.w)
-        slopes.append((changes[:, :, :COORDINATES] @ to_u, changes[:, :, -1]))
+        slopes.append((changes[:, :, 1 : 1 + COORDINATES] @ to_u, changes[:, :, -1]))
     law, followed = film.lands[0].film.law, None
     if law.keeps_oil and not law.carries_gas:
         moved, faster = (np.array(each) for each in zip(*slopes, strict=True))
