@@ -219,7 +219,7 @@ class BallBearingKeys(BearingWithoutFilm):
         default="turning",
         description="balls pass in runs (in equilibrium one is below the shaft), or are spread evenly",
     )
-    friction: BallFriction = Field(default=BallFriction(), description="brakes a free speed")
+    friction: BallFriction | None = Field(default=None, description="brakes a free speed")
     dynamic_rating: Force | None = Field(
         default=None, description="catalogue load rating C, for the life"
     )

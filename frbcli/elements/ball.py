@@ -20,7 +20,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.case.elements import AnyRollingMaterial, AxialOffset, BallBearingKeys, LoadAtSpeed
+from frbcli.case.elements import AnyRollingMaterial, AxialOffset, BallBearingKeys, BallFriction, LoadAtSpeed
 from frbcli.case.over_time import largest
 from frbcli.case.schema import Case
 from frbcli.elements.ball_force import (
@@ -352,13 +352,14 @@ class BallBearingElement(MachineElement):
             offset = given.preload.offset
         elif given.preload:
             force, offset = given.preload, 0.0
+        friction = given.friction or BallFriction()
         return BallBearing(
             balls=given.balls, ball_diameter=given.ball_diameter, pitch_diameter=given.pitch_diameter,
             contact_angle=angle, inner=given.inner_curvature, outer=given.outer_curvature,
             ball=_material(given.ball_material), ring=_material(given.ring_material),
             rows=1 if given.arrangement == "single" else 2, preload=force, offset=offset,
             turning=given.cage == "turning", thrust=self.thrust,
-            f_1=given.friction.f1, f_0=given.friction.f0, viscosity=given.friction.viscosity or 0.0,
+            f_1=friction.f1, f_0=friction.f0, viscosity=friction.viscosity or 0.0,
         )  # fmt: skip
 
     @property

@@ -22,6 +22,7 @@ import numpy as np
 
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
+from frbcli.elements.ball import BallBearingElement
 from frbcli.film.cavitation.table import law_named
 from frbcli.rotor.loads import SpeedProfile
 from frbcli.rotor.reduction import DENSE, MOST
@@ -45,6 +46,7 @@ SAMPLES_HELD, COPIES = 16384, 3  # output times between two writes, and in how m
 # second one, of which one signal at a time is joined.
 KEPT, KEPT_OF_BOTH = 2.1, 2.2
 RINGS, HEAT_s = 1.5, 12.0  # by what and by how much compiling takes longer where rings turn, and with heat
+BALL_us = 0.7  # of a ball in a stage, with what an iteration more costs the films
 AT_REST = 0.4  # of the kernels of a form, without rings and heat: what films at rest need
 HEAT_SIGNALS, WALL_SIGNALS = 5, 2  # of a film; of shaft and housing, or of a ring
 
@@ -180,9 +182,15 @@ def expected_cost(case: Case, plan: Plan, profile: SpeedProfile) -> ExpectedCost
     iterations = solves / max(steps * STAGES[plan.method] * films, 1e-300) if films else 0.0
     asked = solves if films else steps * STAGES[plan.method]  # without films, the rest of the cost of a stage
     loop_s = 1e-6 * asked * plan.form.solve_us(case, plan) + 1e-9 * steps * _rotor_ns(case, plan, iterations)
+    loop_s += 1e-6 * BALL_us * steps * STAGES[plan.method] * _balls(case)
     samples = profile.end / case.output.step
     before, after = before_s(case, plan), after_s(case, plan, loop_s * _quiet_share(case, profile, course), samples)
     return ExpectedCost(round(steps), round(solves), loop_s, before, after, memory_B(case, plan, samples))
+
+
+def _balls(case: Case) -> int:
+    """Balls, or places around of the mean over the cage, at which a stage asks for the force of ball bearings."""
+    return sum(row.points for element in BallBearingElement.of(case) for _, row in element.rows)
 
 
 def _quiet_share(case: Case, profile: SpeedProfile, course: RunCourse) -> float:
