@@ -209,7 +209,7 @@ class BallBearingKeys(BearingWithoutFilm):
     )
     locating: Literal["left", "right"] | None = Field(
         default=None,
-        description="side towards which its fixed outer ring holds the shaft: carries the load of [axial] beside its "
+        description="side towards which its fixed outer ring holds the shaft: carries the load of [axial] next to its "
         "preload",
     )
     damping: Damping = Field(

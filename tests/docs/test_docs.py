@@ -7,13 +7,14 @@ import shlex
 import tomllib
 from pathlib import Path
 
+import click
 import pytest
 from pages import analysis_matrix, case_reference, column_tables, hard_cases_page
 from paths import ROOT
 
 import frbcli
 from frbcli.case.reading.hard import hard_cases
-from frbcli.cli.main import COMMANDS, run
+from frbcli.cli.main import COMMANDS, frb, run
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 
@@ -93,6 +94,32 @@ def test_readme_is_short() -> None:
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     assert len(text.splitlines()) <= 100
     assert len(text.split()) <= 900
+
+
+# Words of this project's own that pages and helps had, and what they say instead
+NOT_USED = {
+    r"resting position": "static equilibrium", r"films? on cells": "finite-volume film",
+    r"keeps? (its|their|the) oil": "mass-conserving", r"at the most": "at most", r"\berrs? by": "has an error of",
+    r"in place of": "instead of", r"\bstands? (for|beside)\b": "is", r"\btold\b": "reported", r"\bbeside\b": "next to",
+    r"\bthat of\b": "the noun itself",
+}  # fmt: skip
+
+
+def test_pages_and_helps_have_the_terms_of_the_field() -> None:
+    texts = {named(page): page.read_text(encoding="utf-8") for page in PAGES}
+    for name in COMMANDS:
+        command = frb.get_command(click.Context(frb), name)
+        assert command is not None
+        texts[f"frb {name} --help"] = command.get_help(click.Context(command, info_name=name))
+    used = [(name, match[0], term) for name, text in texts.items() for words, term in NOT_USED.items()
+            for match in re.finditer(words, " ".join(text.split()))]  # fmt: skip
+    assert used == []
+
+
+def test_the_glossary_has_sixty_terms() -> None:
+    text = (ROOT / "docs" / "conventions.md").read_text(encoding="utf-8").partition("## Glossary")[2]
+    terms = re.findall(r"^- (.+?)(?:: |$)", text, re.MULTILINE)
+    assert sum(len(re.sub(r"\$.*?\$", "", term).split(",")) for term in terms) >= 60
 
 
 def test_readme_tours_every_command() -> None:

@@ -100,7 +100,7 @@ def command(
     for modes in natural:
         show_modes(terminal, modes)
     if natural and _beside_bearings(analysis):
-        terminal.result("On supports, the modes belong to the whole machine: frb stability --shapes SPEED.")
+        terminal.sentence("On supports, the modes belong to the whole machine: frb stability --shapes SPEED.")
     elif len(natural) == 1 and analysis.points[-1].rests:
         at = terminal.speeds.words(analysis.points[-1].speed_Hz)
         terminal.result(f"No natural frequencies on films at {at}: one has no direct stiffness.")

@@ -21,6 +21,7 @@ from frbcli.results.container import refuse
 from frbcli.results.store import Run
 from frbcli.runs.header import FILM_SIGNALS
 
+WALLS = {"ring", "shaft", "housing"}
 PANEL_HEIGHT = 2.4  # inches
 
 
@@ -161,7 +162,12 @@ def draw_quantity(
 
 
 def _part(axes: Axes) -> None:
-    """Rings dashed and walls dotted, films in full lines: there are more of them than colours."""
-    for line in axes.lines:
-        words = str(line.get_label()).split()
-        line.set_linestyle("--" if "ring" in words else ":" if {"shaft", "housing"} & set(words) else "-")
+    """Rings dashed and walls dotted, in the colours of the films that they touch."""
+    words = {line: str(line.get_label()).split() for line in axes.lines}
+    films = {tuple(named): line.get_color() for line, named in words.items() if not WALLS & set(named)}
+    for line, named in words.items():
+        if walls := WALLS & set(named):
+            place = tuple(word for word in named if word not in WALLS)
+            side = "outer" if "housing" in walls else "inner"
+            line.set_color(films.get(place, films.get((*place, side), line.get_color())))
+            line.set_linestyle("--" if "ring" in walls else ":")

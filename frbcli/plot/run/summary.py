@@ -323,12 +323,16 @@ def ring_speed_figure(
 
 
 def _draw_concentric(axes: Axes, concentric: dict[str, float]) -> None:
-    """A dashed line for each ratio of concentric surfaces, labelled with its ring where the ratios differ."""
+    """A dashed line for each ratio of concentric surfaces, named above the axes, with its ring where ratios differ."""
+    names = []
     for value in sorted(set(concentric.values())):
         alike = [name for name, own in concentric.items() if own == value]
-        ring = alike[0] if len(alike) < len(concentric) else ""
-        label = " ".join(word for word in ("torque balance, concentric", ring) if word) + f": {value:.3f}"
-        axes.axhline(value, color=GREY, linestyle=(0, (5, 3)), linewidth=0.9, label=label)
+        ring = f"{alike[0]} " if len(alike) < len(concentric) else ""
+        names.append(f"{ring}{value:.3f}")
+        axes.axhline(value, color=GREY, linestyle=(0, (5, 3)), linewidth=0.9)
+    if names:
+        words = f"dashed: torque balance, concentric: {', '.join(names)}"
+        axes.set_title(words, loc="right", color=GREY, fontsize=9)
 
 
 def _turning(run: Run) -> list[str]:
