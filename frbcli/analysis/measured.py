@@ -386,7 +386,7 @@ def _speeds(units: _Units, given: Measurement, time: Array) -> tuple[Array, Tach
     if given.speed_Hz is not None:
         return np.full(len(time), given.speed_Hz), None
     if given.tacho is None:
-        remedy = "Give --speed COLUMN, --speed-at, or --tacho COLUMN."
+        remedy = "Give --speed-column COLUMN, --speed-at, or --tacho COLUMN."
         raise wrong_file(columns.path, "does not hold the rotor speed.", remedy)
     pulses = columns[given.tacho]
     try:
