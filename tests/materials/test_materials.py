@@ -128,7 +128,7 @@ def test_density_of_a_grade_is_that_at_its_temperature_unless_given() -> None:
     ("settings", "key", "words"),
     [
         ([GRADE], "oil.temperature", "grade"),
-        (["oil.viscosity={ grade = 'SAE 10W40' }", "oil.temperature=350"], "oil.viscosity.grade", "SAE 10W-40"),
+        (["oil.viscosity={ grade = 'SAE 10W45' }", "oil.temperature=350"], "oil.viscosity.grade", "SAE 10W-40"),
         (["oil.viscosity={}", "oil.temperature=350"], "oil.viscosity.grade", "missing"),
         (["oil.shear_factor=0.8"], "oil.shear_factor", "constant"),
         ([GRADE, "oil.temperature=-150 degC"], "oil.temperature", "viscosity"),

@@ -82,7 +82,7 @@ def test_inertias_of_a_ring_that_are_not_given_are_those_of_a_hollow_cylinder() 
     width, mass = 5e-3, 5e-3
     assert bearing.ring_tilt_inertia == pytest.approx(mass * ((5e-3**2 + 8e-3**2) / 4.0 + width**2 / 12.0))
     told = {decision.choice: decision for decision in make_plan(ringed(ring='{mass = "5 g"}')).decisions}
-    assert f"tilt {1e6 * bearing.ring_tilt_inertia:.4g} kg*mm^2" in told["left ring"].value
+    assert f"tilt {1e6 * bearing.ring_tilt_inertia:.4g} kg*mm^2" in told["ring left"].value
     machine = make_rotor(ringed(), COORDINATES)
     assert np.sort(np.diag(machine.mass))[:4] == pytest.approx([0.15e-6] * 4)
     assert [tuple(cone.any(axis=0).nonzero()[0]) for _, cone in machine.cones] == [(6, 7), (10, 11)]
