@@ -151,7 +151,10 @@ GROUPS = {
     "Help": ("docs", "warm-up"),
 }
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # a disk
-NO_CASE = "It changes a CASE before it is computed, and this command takes none: `frb runup CASE --set KEY=VALUE`."
+INSTEAD = {  # of options that only other commands have
+    "--set": "It changes a CASE before it is computed, and this command takes none: `frb runup CASE --set KEY=VALUE`.",
+    "--over": "It is an axis of `frb bearing` and of pictures; the range of a key is `frb limit-cycles --parameter`.",
+}
 LIGHT = ("cases", "schema", "docs")  # compute nothing
 
 
@@ -223,8 +226,9 @@ def run(arguments: Sequence[str]) -> int:
         nothing_asked.show()
         return nothing_asked.exit_code
     except click.ClickException as wrong_usage:
-        if isinstance(wrong_usage, click.NoSuchOption) and wrong_usage.option_name == "--set":
-            wrong_usage = click.UsageError(f"{wrong_usage.format_message()} {NO_CASE}", wrong_usage.ctx)
+        if isinstance(wrong_usage, click.NoSuchOption) and wrong_usage.option_name in INSTEAD:
+            problem = f"No such option '{wrong_usage.option_name}'. {INSTEAD[wrong_usage.option_name]}"
+            wrong_usage = click.UsageError(problem, wrong_usage.ctx)
         return _show_error(arguments, _usage_error(wrong_usage))
     except FrbError as error:
         return _show_error(arguments, error)

@@ -147,3 +147,8 @@ def test_a_shell_is_given_its_script(shell: str) -> None:
         text=True, check=False,
     )  # fmt: skip
     assert "_FRB_COMPLETE" in done.stdout, done.stderr
+
+
+def test_an_option_of_other_commands_leads_there(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["limit-cycles", "jeffcott", "--over", "oil.viscosity='8..14 mPa*s'"]) == 2
+    assert "`frb limit-cycles --parameter`" in " ".join(capsys.readouterr().err.split())
