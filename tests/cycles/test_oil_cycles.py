@@ -174,13 +174,22 @@ def test_the_cycle_at_a_given_flow_is_what_the_time_loop_ends_in() -> None:
 
 @pytest.mark.nightly  # the time loop of inputs
 def test_whirls_at_a_given_flow_grow_as_the_linearised_film_says() -> None:
-    """What tests/linear/test_stability_of_oil.py has written down."""
+    """Differences on cells scatter by 0.07 1/s, and their frequency by as much, from place to place of the cells:
+    the mean over eight places is that of the linearised film but for the cells of both, 0.3 1/s, as in
+    tests/linear/test_stability_of_oil.py."""
     omega = 2.0 * math.pi * 90.0
-    rest = settled(Shooting(period_map(given_flow(), (48, 6)), omega), omega)
+    shooting = Shooting(period_map(given_flow(), (48, 6)), omega)
+    rest = settled(shooting, omega)
     assert rest is not None
-    rate = complex(rest.eigenvalues[rest.whirls[0]])
-    assert rate.real == pytest.approx(1.109, abs=0.02)
-    assert abs(rate.imag) == pytest.approx(283.11, rel=1e-4)
+    rates = []
+    for place in np.arange(8) / 8.0:
+        there = Shooting(shooting.flow.lying(place), omega).rest(shooting.flow.moved(rest.wet, place), omega)
+        assert there is not None
+        rates.append(complex(there.eigenvalues[there.whirls[0]]))
+    linear = max(frbcli.stability(given_flow(), [90.0]).points[0].eigenvalues, key=lambda rate: rate.real)
+    assert np.std(rates) < 0.2
+    assert np.mean(np.real(rates)) == pytest.approx(linear.real, abs=0.3)
+    assert np.mean(np.abs(np.imag(rates))) == pytest.approx(abs(linear.imag), rel=1e-3)
 
 
 GAS = ("rotor.mass=30 kg", "film.cavitation=bubbly", "accuracy.mesh=[4,24]")
