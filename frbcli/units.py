@@ -141,7 +141,7 @@ def quantity(given: object, unit: str, example: str = "") -> float:
         raise ValueFault("is not a number with a unit.", remedy)
     if comma := _DECIMAL_COMMA.fullmatch(given.strip()):
         raise _with_comma(*comma.groups())
-    number, unit_text = parts[1], " ".join(parts[2].translate(_SPELLING).split())
+    number, unit_text = parts[1], _spelled(parts[2])
     if unit == SPEED and unit_text in _PER_MINUTE and _THOUSANDS.fullmatch(number):
         plain = f"{float(number):g} {unit_text}"
         raise ValueFault(
@@ -160,8 +160,7 @@ def is_kinematic(given: object) -> bool:
     parts = _TEXT.fullmatch(given.strip()) if isinstance(given, str) else None
     if parts is None:
         return False
-    unit_text = " ".join(parts[2].translate(_SPELLING).split())
-    return unit_text in _COMMON[KINEMATIC]
+    return _spelled(parts[2]) in _COMMON[KINEMATIC]
 
 
 def is_per_minute(given: object) -> bool:
@@ -169,7 +168,7 @@ def is_per_minute(given: object) -> bool:
     parts = _TEXT.fullmatch(given.strip()) if isinstance(given, str) else None
     if parts is None:
         return False
-    return " ".join(parts[2].translate(_SPELLING).split()) in (*_PER_MINUTE, "krpm")
+    return _spelled(parts[2]) in (*_PER_MINUTE, "krpm")
 
 
 def display(value: float, unit: str) -> str:
@@ -180,6 +179,11 @@ def display(value: float, unit: str) -> str:
     fitting = [(name, one) for name, one, from_ in choices if abs(value) * (1 + 1e-9) >= from_]
     name, one = fitting[-1] if value else next((each for each in choices if each[1] == 1.0), choices[-1])[:2]
     return f"{value / one:.6g} {name}".rstrip()
+
+
+def _spelled(unit_text: str) -> str:
+    """A unit with single blanks, and with its signs and powers in one spelling."""
+    return _POWER.sub("^", " ".join(unit_text.translate(_SPELLING).split()))
 
 
 def _finite(number: object, remedy: str) -> float:
@@ -232,7 +236,7 @@ def _to_si(number: float, unit_text: str, unit: str, remedy: str) -> float:
         unit_text = _pressure_unit(number, unit_text)
     elif unit == "m" and (peaks := _PEAK_TO_PEAK.fullmatch(unit_text)):
         unit_text = peaks[1]
-    unit_text = _POWER.sub("^", _HYPHEN.sub("*", unit_text))
+    unit_text = _HYPHEN.sub("*", unit_text)
     if unit == "K" and unit_text in _CELSIUS:
         return _round(number + _CELSIUS[unit_text])
     if unit == "K" and unit_text in _FAHRENHEIT:

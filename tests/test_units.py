@@ -47,6 +47,7 @@ from frbcli.units import ANGLE, NUMBER, SPEED, TEMPERATURE_DIFFERENCE, ValueFaul
         ("5 %", NUMBER, 0.05),
         ("80 C", "K", 353.15),
         ("176 F", "K", 353.15),
+        ("46 mm2/s", "m^2/s", 46e-6),
         ("12 mPas", "Pa*s", 0.012),  # joined, as on data sheets
         ("10 Nm", "N*m", 10.0),
         ("3 N.m", "N*m", 3.0),

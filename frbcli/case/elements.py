@@ -147,6 +147,9 @@ class RollingMaterial(Model):
         return Elastic(self.modulus, self.poisson, self.density)
 
 
+OPPOSED = ("face-to-face", "back-to-back")  # arrangements of two rows that lean against each other
+
+
 class BallFriction(Model):
     """Palmgren's friction, by the numbers of a catalogue: it brakes a rotor of free speed."""
 

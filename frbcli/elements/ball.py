@@ -20,7 +20,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.case.elements import AnyRollingMaterial, AxialOffset, BallBearingKeys, BallFriction, LoadAtSpeed
+from frbcli.case.elements import OPPOSED, AnyRollingMaterial, AxialOffset, BallBearingKeys, BallFriction, LoadAtSpeed
 from frbcli.case.over_time import largest
 from frbcli.case.schema import Case
 from frbcli.elements.ball_force import (
@@ -233,7 +233,6 @@ def balls_of(of: BallNumbers, memory: Array, cage: float) -> Balls:
     return Balls(around, inner_angle, outer_angle, inner_load, outer_load)
 
 
-OPPOSED = ("face-to-face", "back-to-back")
 TILTED = np.arange(2, 4)  # among the COORDINATES
 SPEEDS = 17  # at which the stiffness in tilt is computed
 

@@ -164,11 +164,10 @@ def ball(
     centrifugal, rest: see of_balls. memory: from place `at` on a, r, u, v of a ball at rest near by, and the
     derivatives of u and v by a and r, u_a, u_r, v_a, v_r; zeros if not known. The values of this ball are left there.
 
-    Returns the force (a, r) in N with which the inner ring presses on the ball, and its derivative (aa, ar, rr) by the
-    place of the inner groove.
+    Returns the force (a, r) in N of the inner ring on the ball, and its derivative (aa, ar, rr) by its groove's place.
 
-    Newton's method on the balance of forces, whose matrix is positive definite while a raceway touches the ball; a step
-    is halved until the imbalance falls. The last step acts on place and force by their derivatives.
+    Newton's method on the balance of forces, positive definite while a raceway touches the ball; a step is halved until
+    the imbalance falls. The last step acts on place and force by their derivatives.
     """
     inner, outer, k_inner, k_outer = of.inner, of.outer, of.k_inner, of.k_outer
     length = math.sqrt(a * a + r * r)

@@ -21,6 +21,7 @@ from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
 from frbcli.plot.signals import clearance
 from frbcli.plot.waterfall import LevelScale, waterfall_figure
+from frbcli.results.measured.columns import unit_in
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
 
@@ -328,3 +329,14 @@ def test_what_a_column_may_mean_is_not_guessed(head: str, row: str, said: str, t
     x, speed = re.split("[,;]", head)[1:]
     with pytest.raises(InputError, match=said):
         measured_run(path, Measurement(x, 35e-6, speed=speed, unit_m=None))
+
+
+@pytest.mark.parametrize(
+    ("name", "unit"),
+    [
+        ("t/s", "s"), ("x / mm", "mm"), ("n in 1/min", "1/min"), ("v_x in mm/s", "mm/s"),
+        ("rev/s", None), ("n rev/s", None), ("v m/s", None), ("V/s", None), ("l/min", None),
+    ],
+)  # fmt: skip
+def test_a_unit_over_time_is_no_name_with_a_unit_of_time(name: str, unit: str | None) -> None:
+    assert unit_in(name) == unit

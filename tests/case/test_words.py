@@ -59,6 +59,8 @@ def test_a_grade_is_known_by_its_spellings(written: str) -> None:
         ("rotor.eccentricity=1 um", "Write unbalance"),
         ("oil.grade=VG 32", 'Write viscosity = "ISO VG 32"'),
         ("oil.viscosity=VG 46", "temperature"),
+        ("oil.type=VG 46", "There are: viscosity"),  # an oil has no kind
+        ("bearing.eccentricity=0.5", "Known are: shaft"),
         ("bearing.clearance=0,035 mm", 'has a decimal comma. Write "0.035 mm".'),
         ("bearing.supply.pressure=3 barg", 'is a gauge pressure; pressures are absolute here. Write "4.01 bar"'),
         ("bearing.kind=semi-floating", '"floating-ring" with [bearing.pin]'),

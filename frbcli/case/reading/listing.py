@@ -15,7 +15,7 @@ from frbcli.case.rules.film_checks import OF_SPRING, WITH_DEFAULT
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cavitation import table
-from frbcli.units import NUMBER, PER_MINUTE, display, readable
+from frbcli.units import NUMBER, PER_MINUTE, SPEED, display, is_per_minute, readable
 
 MOST_LISTED = 12  # numbers of a list; of a table from a file only the count is listed
 
@@ -64,7 +64,7 @@ def _one(key: str, content: Any, field: FieldInfo, written: Any) -> Iterator[Val
     elif isinstance(content, float):
         unit = unit_of(field) or NUMBER
         si = "" if unit == NUMBER else readable(unit)
-        per_minute = unit == "Hz" and isinstance(written, str) and written.endswith("rpm")
+        per_minute = unit == SPEED and is_per_minute(written)
         shown = f"{PER_MINUTE * content:.6g} rpm" if per_minute else display(content, unit)
         yield Value(key, content, si, shown, bool(si) and isinstance(written, int | float))
     else:

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from frbcli.case.elements import EMPTY_MATRIX, WITHOUT_FILM, BallBearingKeys
+from frbcli.case.elements import EMPTY_MATRIX, OPPOSED, WITHOUT_FILM, BallBearingKeys
 from frbcli.case.files.coefficient_files import MASSES, column_lengths, is_negative, over_speed_problem
 from frbcli.case.over_time import values_of
 from frbcli.case.reading.tables import Breach, Path, number, ring_films, table, tables
@@ -18,7 +18,6 @@ from frbcli.case.rotor import OF_SECTIONS
 from frbcli.units import ANGLE, NUMBER, SPEED, display
 
 CURVATURES = tuple((key, BallBearingKeys.model_fields[key].default) for key in ("inner_curvature", "outer_curvature"))
-OPPOSED = ("face-to-face", "back-to-back")
 GIVEN = ("stiffness", "damping", "mass")
 REMEDY = "Remove it, or add a bearing with a film."
 # Keys that say how films are computed, recorded or touched.

@@ -49,26 +49,25 @@ LAWS_ELSEWHERE = {
     **dict.fromkeys(("full-sommerfeld", "none", "2pi"), 'Write "sommerfeld".'),
     **dict.fromkeys(("pi-film", "pi"), 'Write "half-sommerfeld".'),
 }
-KEYS_ELSEWHERE = {
-    "radius": "Write diameter{twice}.",
-    "L_D": "Write width and diameter.",
-    "type": "Write kind.",
-    "grade": 'Write viscosity = "ISO VG 32", and temperature.',
-    "vg": 'Write viscosity = "ISO VG 32", and temperature.',
-    "eccentricity": "Write unbalance, the mass times this eccentricity.",
-    "max": "Write to.",
-    "min": "Write from.",
-    "start": "Write from.",
-    "end": "Write to.",
-    "ramp": "Write duration, the difference of the speeds over this rate.",
-    "acceleration": "Write duration, the difference of the speeds over this rate.",
-    "diametral_clearance": "Clearances are radial: write clearance, half of the diametral one{half}.",
-    "diametrical_clearance": "Clearances are radial: write clearance, half of the diametral one{half}.",
-    "radial_clearance": "Clearances are radial: write clearance.",
-    "length": "Write width.",
-    "rpm": 'Write the unit with the number, e.g. to = "18000 rpm".',
-    "dynamic_viscosity": 'Write viscosity = "12 mPa*s".',
-    "kinematic_viscosity": 'Write viscosity = "12 cSt", and density.',
+OVER_RATE = "Write duration, the difference of the speeds over this rate."
+KEYS_ELSEWHERE = {  # (the key that takes its place, in whose table alone it is answered; the words)
+    "radius": ("diameter", "Write diameter{twice}."),
+    "L_D": ("width", "Write width and diameter."),
+    "length": ("width", "Write width."),
+    "type": ("kind", "Write kind."),
+    **dict.fromkeys(("grade", "vg"), ("viscosity", 'Write viscosity = "ISO VG 32", and temperature.')),
+    "dynamic_viscosity": ("viscosity", 'Write viscosity = "12 mPa*s".'),
+    "kinematic_viscosity": ("viscosity", 'Write viscosity = "12 cSt", and density.'),
+    "eccentricity": ("unbalance", "Write unbalance, the mass times this eccentricity."),
+    **dict.fromkeys(("max", "end"), ("to", "Write to.")),
+    **dict.fromkeys(("min", "start"), ("from", "Write from.")),
+    **dict.fromkeys(("ramp", "acceleration"), ("duration", OVER_RATE)),
+    "rpm": ("to", 'Write the unit with the number, e.g. to = "18000 rpm".'),
+    "radial_clearance": ("clearance", "Clearances are radial: write clearance."),
+    **dict.fromkeys(
+        ("diametral_clearance", "diametrical_clearance"),
+        ("clearance", "Clearances are radial: write clearance, half of the diametral one{half}."),
+    ),
 }
 UNKNOWN, MISSING = "is not known here.", "is missing."
 
@@ -227,8 +226,9 @@ def _how_to_add(path: Path, field: FieldInfo | None) -> str:
 
 def _nearest(key: str, models: Sequence[type[Model]], value: object) -> str:
     known = [name for model in models for name in _fields(model)]
-    if key in KEYS_ELSEWHERE and key not in known:
-        return KEYS_ELSEWHERE[key].format(half=_times(0.5, value), twice=_times(2.0, value))
+    instead, words = KEYS_ELSEWHERE.get(key, ("", ""))
+    if instead in known and key not in known:
+        return words.format(half=_times(0.5, value), twice=_times(2.0, value))
     return did_you_mean(key, known, f"Known are: {', '.join(known)}.")
 
 

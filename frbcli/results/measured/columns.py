@@ -23,7 +23,8 @@ _LONG = "ms|us|µs|sec|Hz|hz|kHz|rpm|RPM|krpm|rad/s|mm|um|µm|nm|cm|mil|mils|mic
 
 
 SUFFIX = re.compile(rf".+(?:_(?:in_)?({_LONG}|s|m)|\s({_LONG}))")
-WRITTEN_OUT = re.compile(r"(.+?)(?:\s+in\s+|\s*/\s*)\(?([^()\s]+)\)?")  # n in 1/min, t/s, v/(mm/s)
+WRITTEN_OUT = re.compile(r"(.+?)(\s+in\s+|\s*/\s*)(\S+)")  # n in 1/min, t/s; brackets are read with the head
+OVER_TIME = {*UNITS, "rev", "r", "u", "l", "kg", "j"}  # what has a rate: rev/s is a unit, and no rev in seconds
 
 
 TIME_NAME = re.compile(r"(?:time|timestamp|zeit|temps|t)(?:_?(?:s|sec|ms|us|µs))?", re.IGNORECASE)
@@ -133,8 +134,10 @@ def unit_in(name: str) -> str | None:
     if match := SUFFIX.fullmatch(plain):
         return match.group(1) or match.group(2)
     written = WRITTEN_OUT.fullmatch(plain)
-    known = written is not None and written[2].lower() in UNITS and plain.lower() not in UNITS
-    return written[2] if known and written is not None else None
+    if written is None or written[3].lower() not in UNITS or plain.lower() in UNITS:
+        return None
+    is_rate = written[2].strip() == "/" and written[1].split()[-1].lower() in OVER_TIME
+    return None if is_rate else written[3]
 
 
 def is_interval(name: str) -> bool:

@@ -209,8 +209,7 @@ HEAT_REMEDY = 'Write thermal.model = "none", and as temperature of each film the
 
 
 def given_coefficient_faults(case: Case) -> Iterator[Fault]:
-    """Coefficients of bearings that depend on the speed are followed where films have neither heat nor oil of their
-    own."""
+    """Coefficients of bearings that depend on the speed are followed but by harmonic balance with heat."""
     if case.heat is not None and not by_shooting(case):
         yield from speed_dependent(case, CONSTANT)
 
