@@ -166,8 +166,7 @@ def ball(
 
     Returns the force (a, r) in N of the inner ring on the ball, and its derivative (aa, ar, rr) by its groove's place.
 
-    Newton's method on the balance of forces, positive definite while a raceway touches the ball; a step is halved until
-    the imbalance falls. The last step acts on place and force by their derivatives.
+    Newton's method on the balance of forces; steps that do not help are halved. The last one acts by derivatives.
     """
     inner, outer, k_inner, k_outer = of.inner, of.outer, of.k_inner, of.k_outer
     length = math.sqrt(a * a + r * r)
