@@ -27,7 +27,7 @@ from frbcli.analysis.signals import RunLike, SignalOf, course, joined, points
 from frbcli.arrays import Array, Complex, Truths
 from frbcli.case.reading.load import load_case_text
 from frbcli.case.schema import Case
-from frbcli.columns import Column, Shown, Table, Tabular, speed_shown, table_of
+from frbcli.columns import Column, Shown, Table, Tabular, spaced, speed_shown, table_of
 from frbcli.equilibrium.linearised import coefficients_of
 from frbcli.errors import NotConverged, did_you_mean, input_error
 from frbcli.linear.critical_speeds import larger_semi_axis
@@ -248,7 +248,7 @@ PLANES = (
 # Of a BalancedPoint
 POINTS = (
     Column("speed", "Hz", "rotor speed", attrgetter("speed_Hz"), shown=(speed_shown(),)),
-    Column("point", "", "point", key="node", shown=(Shown("point", lambda name: name.replace("_", " ")),)),
+    Column("point", "", "point", key="node", shown=(Shown("point", spaced),)),
     Column("amplitude", "m", "synchronous amplitude, larger semi-axis", shown=(Shown("um", ".3g", "um"),)),
     Column("remaining", "m", "expected with the correction", shown=(Shown("corrected um", ".3g", "um"),)),
 )  # fmt: skip

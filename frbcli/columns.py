@@ -33,6 +33,11 @@ SCALES = {  # over SI
 }  # fmt: skip
 
 
+def spaced(name: str) -> str:
+    """The name of a film or point as people read it: "turbine inner" for turbine_inner."""
+    return name.replace("_", " ")
+
+
 @dataclass(frozen=True)
 class Shown:
     """A column in a table of the terminal.

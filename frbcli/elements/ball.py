@@ -258,9 +258,6 @@ def row_in_tilt(row: BallBearing, place: float, sense: float, omega: float) -> t
     return force, moment - half * (q_r * across + 2.0 * sense * q_a * along)
 
 
-LEFT_OUT = "the gyroscopic moment of the balls is left out"
-
-
 @dataclass(frozen=True)
 class BallForce(ForceLaw):
     """The force of a ball bearing on the shaft. Its cage turns with the shaft, from where a ball is below."""
@@ -445,10 +442,10 @@ class BallBearingElement(MachineElement):
         preload = f"preload {display(rings.preload, 'N')} by a spring" if rings.preload else "rings held along the axis"
         if given.locating is not None:
             preload += f", and the axial load to the {given.locating}"
-        friction = "" if BallForce(rings).brakes else "friction, "
+        friction = "" if BallForce(rings).brakes else ", friction"
         reason = f"Hertz contacts, centrifugal force of the balls, {angle}, {preload}"
-        tilt = "" if self.tilt is not None else "moments of the rings and "
-        return "bearings", value, f"{reason}; {friction}{tilt}{LEFT_OUT}"
+        tilt = "" if self.tilt is not None else ", moments of the rings"
+        return "bearings", value, f"{reason}; left out: gyroscopic moments of the balls{tilt}{friction}"
 
 
 def _thrust(case: Case, bearing: BallBearingKeys) -> tuple[float, float]:

@@ -18,7 +18,7 @@ from operator import attrgetter
 import numpy as np
 
 from frbcli.arrays import Array, Complex
-from frbcli.columns import Column, Shown
+from frbcli.columns import Column, Shown, spaced
 from frbcli.elements.pin import DAMPING, STIFFNESS
 from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator
 from frbcli.equilibrium.resting import STILL, RestingPosition
@@ -355,7 +355,7 @@ def first_order(mass: Array, damping: Array, stiffness: Array) -> Array:
 
 # Of a FilmTemperature, all of one bearing
 WARM_FILMS = (
-    Column("film", "", "name of the film", shown=(Shown("film", lambda name: name.replace("_", " ")),)),
+    Column("film", "", "name of the film", shown=(Shown("film", spaced),)),
     Column("temperature", "K", "temperature of the film", shown=(Shown("degC", ".1f", "degC"),)),
     Column("viscosity", "Pa s", "viscosity of its oil", shown=(Shown("mPa*s", ".4g", "mPa s"),)),
     Column("clearance", "m", "clearance", shown=(Shown("gap, um", ".4g", "um"),)),

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from frbcli.columns import ENTRIES, Column, Shown, named, speed_shown
+from frbcli.columns import ENTRIES, Column, Shown, named, spaced, speed_shown
 from frbcli.units import with_uncertainty
 
 # Tables of the terminal
@@ -235,7 +235,7 @@ PEAKS = (
     Column("mode", "", "number of the resonant mode", shown=(Shown("mode", table=RESPONSE),)),
     Column("direction", "", "`forward`, `backward` or `mixed`", shown=(Shown("whirl", table=RESPONSE),)),
     Column("node", "", "point with the largest amplitude",
-           shown=(Shown("point", lambda name: name.replace("_", " "), table=RESPONSE),)),
+           shown=(Shown("point", spaced, table=RESPONSE),)),
     Column("amplitude", "m", "larger semi-axis of its orbit", more="none without damping",
            shown=(Shown("um", ".4g", "um", RESPONSE),)),
     Column("amplification_factor", "", "speed over the width of the peak at 0.707 of its height",

@@ -26,7 +26,7 @@ import numpy as np
 
 from frbcli.arrays import Array, Complex
 from frbcli.case.schema import Case
-from frbcli.columns import Column, Shown, Table, Tabular, speed_shown, table_of
+from frbcli.columns import Column, Shown, Table, Tabular, spaced, speed_shown, table_of
 from frbcli.equilibrium.hopf import oscillating
 from frbcli.equilibrium.linearised import coefficients_of, eigenpairs
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
@@ -247,7 +247,7 @@ def _verdict(within: bool | None) -> str:
 
 
 _POINT = (
-    Column("node", "", "point of the shaft", shown=(Shown("point", lambda name: name.replace("_", " ")),)),
+    Column("node", "", "point of the shaft", shown=(Shown("point", spaced),)),
     Column("speed", "Hz", "speed of the largest ratio to its limit", attrgetter("speed_Hz"),
            shown=(speed_shown(),)),
     Column("peak_to_peak", "m", "vibration, peak to peak",

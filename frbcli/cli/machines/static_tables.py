@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from frbcli.thermal.model import SteadyHeat
 
 WARMTH = "film, degC"
-MACHINE = ("film", "eps", "h, um", "p, bar", WARMTH, "loss, W", "flow, l/min", "err. of K, C")
+MACHINE = ("film", "eps", "h, um", "p, bar", WARMTH, "loss, W", "flow, l/min", "err. K, C")
 LITRES_PER_MINUTE, ZERO_CELSIUS = 6e4, 273.15  # of a m^3/s; K
 MOST_SPEEDS, MOST_LINES = 20, 40  # of the table; JSON and the picture have every speed
 IN_LINE = 2  # in the one line of a single film

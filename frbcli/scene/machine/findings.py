@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
 from frbcli.case.film import ColdClearance, FilmGeometry
 from frbcli.case.schema import Case
-from frbcli.columns import Column, Shown, speed_shown
+from frbcli.columns import Column, Shown, spaced, speed_shown
 from frbcli.elements.supports import DamperElement
 from frbcli.errors import NotConverged
 from frbcli.film.gap import (
@@ -66,13 +66,13 @@ class FilmOperation:
 
 # Of a FilmOperation
 FILM_OPERATION = (
-    Column("film", "", "name of the film", attrgetter("name"), shown=(Shown("film"),)),
+    Column("film", "", "name of the film", attrgetter("name"), shown=(Shown("film", spaced),)),
     Column("clearance", "m", "clearance", shown=(Shown("gap, um", ".4g", "um"),)),
     Column("warming", "m", "what heat has added to it", shown=(Shown("by heat, um", "+.3g", "um"),)),
     Column("turning", "m", "what centrifugal growth would add", shown=(Shown("by spin, um", "+.2g", "um"),)),
     Column("viscosity", "Pa s", "viscosity of the oil", shown=(Shown("mPa*s", ".4g", "mPa s"),)),
     Column("speed", "Hz", "sum of the speeds of journal and shell", lambda film: film.omega / (2.0 * math.pi),
-           shown=(speed_shown(head="wall speeds, Hz"),)),
+           shown=(speed_shown(head="speeds, Hz"),)),
     Column("reynolds_number", "", "Reynolds number (3.3)", attrgetter("reynolds"), shown=(Shown("Re (3.3)", ".0f"),)),
     Column("laminar", "", "whether (3.3) holds"),
 )  # fmt: skip
