@@ -343,9 +343,11 @@ def balance(
     >>> frbcli.balance(run, ["disk"]).planes  # doctest: +SKIP
     """
     _check_angles([run, *(trial.run for trial in trials)], triggered)
-    named = tuple(dict.fromkeys(planes or (trial.plane for trial in trials)))
+    named = tuple(planes or dict.fromkeys(trial.plane for trial in trials))
     if not named:
         raise input_error("balance", "planes", "", "are missing.", "Name disks of the case, as in --planes a,b.")
+    if len(set(named)) < len(named):
+        raise input_error("balance", "planes", ", ".join(named), "names a plane twice.", "Name each plane once.")
     vectors = synchronous_vectors(run, tuple(points or shaft_points(run)), speeds_Hz)
     doubts: list[str] = []
     influence = _by_trials(vectors, named, trials, doubts) if trials else _computed(run, vectors, named, doubts)

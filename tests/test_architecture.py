@@ -116,13 +116,13 @@ assert not loaded, loaded
 def test_plans_are_made_without_a_compiler() -> None:
     """Those are slow to import: of kernels, of matrices (which turbochargers have), of pictures. A case with heat has
     its temperatures from kernels that are compiled already: the compiler comes last. Short runs of films on cells, for
-    the error that is expected, are part of what is shown, not of the plan."""
+    the error that is expected, are part of what is shown, not of the plan. Balls have elliptic integrals."""
     code = """
 import sys
 import frbcli
 from frbcli.cli.main import run
 cases = {name: frbcli.load_case(name) for name in frbcli.shipped_cases()}
-light = [name for name, case in cases.items() if case.heat is None and not case.shaft]
+light = [name for name, case in cases.items() if case.heat is None and not case.shaft and "ball" not in name]
 for name in light:
     assert run(["check", name, "--quiet"]) == 0
 assert run(["check", "jeffcott"]) == 0

@@ -39,7 +39,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
     from frbcli.case.reading.listing import values
     from frbcli.scene.cost import compile_B
     from frbcli.scene.cost_limits import require_affordable
-    from frbcli.scene.machine.findings import FILM_OPERATION, findings, operating_points, remarks
+    from frbcli.scene.machine.findings import FILM_OPERATION, findings, operating_points
     from frbcli.scene.planning.cell_choice import run_up_profile
     from frbcli.scene.planning.kinematic_plan import kinematic_plan
     from frbcli.scene.planning.plan import cost_of_run, expected_error, make_plan
@@ -54,9 +54,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
         return
     loads = findings(case)
     _show_findings(case, loads, terminal)
-    doubts = remarks(case)
-    for doubt in doubts:
-        terminal.sentence(f"Note: {doubt}")
+    doubts = _show_remarks(case, terminal)
     if everything:
         terminal.table("values", ("key", "SI", "reads"), _values(listed))
     bare = _show_bare(listed, terminal)
@@ -114,6 +112,15 @@ def _check_thrust(case: Case, listed: Sequence[ListedValue], everything: bool, t
     terminal.emit(_document(case, listed, bare, plan))
 
 
+def _show_remarks(case: Case, terminal: Terminal) -> tuple[str, ...]:
+    from frbcli.scene.machine.findings import remarks
+
+    doubts = remarks(case)
+    for doubt in doubts:
+        terminal.sentence(f"Note: {doubt}")
+    return doubts
+
+
 def _check_balls(case: Case, listed: Sequence[ListedValue], everything: bool, terminal: Terminal) -> None:
     """What `frb bearing` models of a case of ball bearings alone."""
     from frbcli.elements.ball import BallBearingElement
@@ -123,8 +130,9 @@ def _check_balls(case: Case, listed: Sequence[ListedValue], everything: bool, te
         terminal.table("values", ("key", "SI", "reads"), _values(listed))
     bare = _show_bare(listed, terminal)
     plan = [Decision(*element.line) for element in BallBearingElement.of(case)]
+    doubts = _show_remarks(case, terminal)
     terminal.table("plan", ("choice", "value", "reason"), [(d.choice, d.value, d.reason) for d in plan])
-    terminal.emit(_document(case, listed, bare, plan))
+    terminal.emit(_document(case, listed, bare, plan) | {"remarks": doubts})
 
 
 def _axial(case: Case) -> dict[str, object]:

@@ -70,7 +70,8 @@ class QuantityOption(click.ParamType[float]):
         try:
             number = quantity(value, self.unit, self.example)
         except ValueError as fault:
-            self.fail(f"{value!r} {fault}", param, ctx)
+            listed = isinstance(param, click.Option) and param.multiple and "," in str(value)
+            self.fail(f"{value!r} {fault}{' Repeat the option for several values.' if listed else ''}", param, ctx)
         if self.unit == "Hz" and ctx is not None and is_per_minute(value):
             ctx.meta[PER_MINUTE] = True
         if self.positive and number <= 0.0:

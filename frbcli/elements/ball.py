@@ -47,6 +47,7 @@ from frbcli.units import display
 
 SMALL_APPROACH = 1e-6  # m
 PER_TURN = 1e6 * 30.0 / math.pi  # nu n in mm^2/s rpm of nu omega in m^2/s rad/s
+DENTED = 4.2e9  # Pa, Hertz pressure of the static load rating of ball bearings (ISO 76): a dent of 1e-4 of a ball
 MEAN_POINTS = 24  # at which balls that are spread evenly are summed, at least; twice as many balls are as good
 
 
@@ -140,6 +141,30 @@ class BallBearing:
         load = (self.preload or 0.0) / (self.balls * along)
         pressed = max(self.offset, 0.0) * along if self.preload is None else (inner + outer) * load ** (2.0 / 3.0)
         return max(pressed, SMALL_APPROACH)
+
+    @property
+    def preload_pressure(self) -> float:
+        """Largest Hertz pressure in Pa under the preload alone: F_a = Z K delta^1.5 sin(alpha)."""
+        from scipy.optimize import brentq
+
+        inner, outer = self.contacts
+        stiffness = (inner.stiffness ** (-2.0 / 3.0) + outer.stiffness ** (-2.0 / 3.0)) ** -1.5
+        radial, axial = self.grooves * math.cos(self.contact_angle), self.grooves * math.sin(self.contact_angle)
+
+        def load(moved: float) -> float:
+            """N on each ball."""
+            return float(stiffness * max(math.hypot(radial, axial + moved) - self.grooves, 0.0) ** 1.5)
+
+        def missing(moved: float) -> float:
+            length = math.hypot(radial, axial + moved)
+            return (self.preload or 0.0) - self.balls * load(moved) * (axial + moved) / length
+
+        most = self.ball_diameter  # beyond every sound preload
+        if self.preload is None or missing(most) > 0.0:
+            moved = self.offset if self.preload is None else most
+        else:
+            moved = float(brentq(missing, 0.0, most, xtol=1e-15))
+        return max(inner.pressure(load(moved)), outer.pressure(load(moved)))
 
     @property
     def points(self) -> int:

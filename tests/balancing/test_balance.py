@@ -264,7 +264,7 @@ def test_a_feeble_trial_is_doubtful(tmp_path: Path, capsys: pytest.CaptureFixtur
 
 @pytest.mark.parametrize(("words", "problem"), [
     (["--planes", "c"], "is no disk of"), ([], "are missing"),
-    (["--planes", "a", "--speed", "400 Hz"], "is not reached"),
+    (["--planes", "a", "--speed", "400 Hz"], "is not reached"), (["--planes", "a,b,a"], "names a plane twice"),
     (["--planes", "a", "--probe", "disk_c"], "is not a point"), (["--trial", "a=trial.csv"], "is no trial run"),
     (["--trial", "a=trial.csv:5 g@30 deg"], "kg*m"), (["--trial", "a=trial.csv:0 g*mm@30 deg"], "no unbalance above 0"),
     (["--trial", "a=trial.csv:5 g*mm@30 mm"], "does not fit"),

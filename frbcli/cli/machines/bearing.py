@@ -244,7 +244,9 @@ def ball_sheet(
 
 def _show_balls(terminal: Terminal, sheet: BallSheet) -> None:
     from frbcli.columns import legend, table_of
+    from frbcli.elements.ball import DENTED
     from frbcli.linear.columns import BALL_SHEET, BALLS, FREQUENCIES, STIFFNESSES
+    from frbcli.units import display
 
     for bearing in sheet.bearings:
         name, states = " ".join(filter(None, (sheet.case.heading, bearing))), sheet.of(bearing)
@@ -252,4 +254,7 @@ def _show_balls(terminal: Terminal, sheet: BallSheet) -> None:
         for table, title in titles.items():
             terminal.show(title, table_of(BALL_SHEET, states), table)
     terminal.sentence(f"{legend(BALL_SHEET, BALLS)}. All per bearing, with one ball in the line of the load.")
+    dented = [state for state in sheet.points if max(state.inner_p_max, state.outer_p_max) > DENTED]
+    if dented:
+        terminal.sentence(f"Hertz pressures above {display(DENTED, 'Pa')} leave dents (ISO 76): {len(dented)} states.")
     _show_problems(terminal, sheet.points)

@@ -23,6 +23,7 @@ from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
 from frbcli.case.film import ColdClearance, FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, spaced, speed_shown
+from frbcli.elements.ball import DENTED, BallBearingElement
 from frbcli.elements.supports import DamperElement
 from frbcli.errors import NotConverged
 from frbcli.film.gap import (
@@ -304,13 +305,24 @@ def _film(case: Case, name: str, film: FilmGeometry, load: float, omega: float) 
 
 def remarks(case: Case) -> tuple[str, ...]:
     """What a case has that contradicts itself or is probably not meant, a sentence each."""
+    sentences = list(_dented_balls(case))
     if case.given_rotor is None:
-        return ()
-    sentences: list[str] = []
+        return tuple(sentences)
     shaft = shaft_of(case)
     if not (shaft.eccentricity or shaft.bow) and not case.forces and not case.bases:
         sentences.append("The rotor has no unbalance: it moves by itself only where it is unstable.")
     return (*sentences, *_journals_off_the_shaft(case), *_names_off_their_place(case))
+
+
+def _dented_balls(case: Case) -> Iterator[str]:
+    """Ball bearings whose preload alone would dent them."""
+    for element in BallBearingElement.of(case):
+        pressure = element.rings.preload_pressure
+        if pressure > DENTED:
+            yield (
+                f"The preload alone makes a Hertz pressure of {display(pressure, 'Pa')} in {element.key}: "
+                f"balls leave dents above {display(DENTED, 'Pa')} (ISO 76)."
+            )
 
 
 def _journals_off_the_shaft(case: Case) -> Iterator[str]:

@@ -26,6 +26,7 @@ from frbcli.rotor.port_function import evaluate, evaluate_along
 from frbcli.runs.run import runup
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import CYCLES, RUN, SPEED_CYCLES
+from frbcli.scene.machine.findings import remarks
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 
@@ -169,6 +170,17 @@ def test_keys_have_their_meaning() -> None:
     assert (held.rings.preload, held.rings.offset) == (None, 4e-6)
     (deep,) = BallBearingElement.of(on_balls({**RADIAL, "radial_clearance": "8 um"}))
     assert deep.rings.free == pytest.approx(4e-6, rel=1e-9)
+
+
+@pytest.mark.parametrize("preload", [{"offset": "5 um"}, "60 N"])
+def test_a_preload_that_dents_the_balls_is_remarked(preload: Any) -> None:
+    rings = BallBearingElement(key="", given=on_balls({**A, "preload": preload}).given_bearings[0]).rings
+    balls, (inner, _) = at_displacement(rings, np.zeros(2), 0.0).balls, rings.contacts
+    assert rings.preload_pressure == pytest.approx(inner.pressure(float(balls.inner_load.max())), rel=1e-9)
+    assert not remarks(on_balls({**A, "preload": preload}, LOAD, unbalance=1e-6))
+    dented = on_balls({**A, "preload": {"offset": "60 um"} if isinstance(preload, dict) else "20 kN"}, LOAD, 2.0, 1e-6)
+    assert all("ISO 76" in sentence for sentence in remarks(dented))
+    assert len(remarks(dented)) == 1
 
 
 def test_analyses_without_ball_bearings_say_so() -> None:
