@@ -299,11 +299,11 @@ class PeriodMap:
 
 def period_map(case: Case, cells: tuple[int, int] | None = None) -> PeriodMap:
     """The map of a case whose films are all on cells. cells: (around, along), default: the cells of its plan."""
-    plan = make_plan(case)
+    plan = replace(make_plan(case), tolerance=TOLERANCE)  # films on cells are solved as closely as the tolerance asks
     plan = plan if cells is None else replace(plan, cells=cells)
     system = make_system(case, plan)
     own = system.films
-    plan = replace(plan, tolerance=TOLERANCE if own.on_cells else SHARPEST)
+    plan = plan if own.on_cells else replace(plan, tolerance=SHARPEST)
     films = own.changeable().loop if RunInputs.of(case, system).limited else own.loop
     contents, ports = own.gas_contents, system.rotor.ports
     if own.on_cells:
