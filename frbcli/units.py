@@ -28,6 +28,7 @@ _SPEED_UNITS = {"Hz": 1.0, "kHz": 1e3, "rpm": 1 / 60, "1/min": 1 / 60, "krpm": 1
 _PER_MINUTE = ("rpm", "RPM", "1/min", "min^-1", "min-1", "r/min", "rev/min", "U/min", "tr/min", "cpm")  # one unit
 _SPEED_SPELLINGS = dict.fromkeys(_PER_MINUTE, "rpm") | {"rev/s": "Hz", "rps": "Hz"}
 _ANGLE_UNITS = {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180, "°": math.pi / 180}
+_ANGLE_SPELLINGS = {"degree": "deg", "degrees": "deg"}
 _ANGULAR_RATE_UNITS = {f"{name}/s": one for name, one in _ANGLE_UNITS.items()}
 _NUMBER_UNITS = {"": 1.0, "1": 1.0, "%": 0.01}
 _TABLES = {SPEED: _SPEED_UNITS, ANGLE: _ANGLE_UNITS, ANGULAR_RATE: _ANGULAR_RATE_UNITS, NUMBER: _NUMBER_UNITS}
@@ -60,11 +61,13 @@ _COMMON: dict[str, dict[str, float]] = {
     "W/(m*K)": {"W/(m*K)": 1.0, "W/(m K)": 1.0, "W/m/K": 1.0},
     TEMPERATURE_DIFFERENCE: {"K": 1.0},
 }
-_CELSIUS = dict.fromkeys(("degC", "°C", "C", "deg C", "° C"), 273.15)  # K; no temperature is in coulomb
-_FAHRENHEIT = ("F", "deg F", "° F")
+_CELSIUS = dict.fromkeys(("degC", "°C", "C", "deg C", "° C", "Celsius"), 273.15)  # K; no temperature is in coulomb
+_FAHRENHEIT = ("F", "deg F", "° F", "Fahrenheit")
 _COLD = 100.0  # K, below which nobody writes degC
 
 _TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*)", re.DOTALL)
+# Thousands apart, as 120 000, which have one reading.
+_GROUPED = re.compile(r"(?<!\d)\d{1,3}(?:[ '’_\u00a0\u202f]\d{3})+(?!\d)")
 _DECIMAL_COMMA = re.compile(r"([+-]?\d+),(\d+)(.*)", re.DOTALL)
 _THOUSANDS = re.compile(r"\d{1,3}\.\d{3}")  # of a speed in rpm: 150.000 is 150 to some and 150 000 to others
 _MOST_OF_A_GROUP = 3  # digits behind a mark of thousands
@@ -76,7 +79,8 @@ _POWER = re.compile(r"(?<=[A-Za-zµ])(?=[2-4](?![0-9]))")  # of kg/m3
 # Products as they are written without a sign between their units, and units that the registry knows by other names.
 _JOINED = re.compile(r"\b([mkM]?N|m?Pa|k?g)(m|mm|cm|s)(?![A-Za-z])")
 _PER_KELVIN = re.compile(r"/(m|kg) ?K$")  # of W/mK, whose kelvin is below the line
-_NAMES = {"lbm": "lb", "kp": "kgf", "lpm": "l/min", "gpm": "gallon/min"}
+_NAMES = {"lbm": "lb", "kp": "kgf", "lpm": "l/min", "gpm": "gallon/min", "GPM": "gallon/min"}
+_WEIGHTS = {"lb": "lbf", "oz": "ozf"}  # of masses that stand where a force is meant
 _PEAK_TO_PEAK = re.compile(r"(\S+)\s+(?:pp|p-p|pk-pk|pkpk)")
 LONGEST_UNIT = 100  # characters; longer ones are not searched
 LONGEST_SHOWN = 40  # characters of a unit in a fault
@@ -90,7 +94,8 @@ _NAME = re.compile(r"[A-Za-zµ°]+")
 _PREFIXES = frozenset(("y", "z", "f", "p", "n", "u", "µ", "c", "da", "k", "M", "G", "E", "Z", "Y"))
 _BEFORE_BLANK = re.compile(rf"(?<![A-Za-zµ°])({'|'.join(sorted(_PREFIXES))}|[mdhTP])\s+(?=[A-Za-z])")
 _ABBREVIATION = 4  # characters at most: an s behind it is no plural, but may be a second
-_SPELLING = str.maketrans({"²": "^2", "³": "^3", "⁻": "^-", "¹": "1", "·": "*", "⋅": "*", "μ": "µ"})
+_SIGNS = {"²": "^2", "³": "^3", "⁻": "^-", "¹": "1", "·": "*", "⋅": "*", "μ": "µ", '"': "in", "″": "in"}
+_SPELLING = str.maketrans(_SIGNS)
 
 # What people read, by SI unit: (name, SI value of one, SI value from which it is used), smallest first.
 _DISPLAY: dict[str, tuple[tuple[str, float, float], ...]] = {
@@ -136,10 +141,11 @@ def quantity(given: object, unit: str, example: str = "") -> float:
         return _finite(given, remedy)
     if not isinstance(given, str):
         raise ValueFault("is not a quantity.", remedy)
-    parts = _TEXT.fullmatch(given.strip())
+    text = _without_groups(given)
+    parts = _TEXT.fullmatch(text)
     if parts is None:
         raise ValueFault("is not a number with a unit.", remedy)
-    if comma := _DECIMAL_COMMA.fullmatch(given.strip()):
+    if comma := _DECIMAL_COMMA.fullmatch(text):
         raise _with_comma(*comma.groups())
     number, unit_text = parts[1], _spelled(parts[2])
     if unit == SPEED and unit_text in _PER_MINUTE and _THOUSANDS.fullmatch(number):
@@ -157,7 +163,7 @@ def quantity(given: object, unit: str, example: str = "") -> float:
 
 def is_kinematic(given: object) -> bool:
     """Whether `given` is text of a kinematic viscosity, such as "12 cSt"."""
-    parts = _TEXT.fullmatch(given.strip()) if isinstance(given, str) else None
+    parts = _TEXT.fullmatch(_without_groups(given)) if isinstance(given, str) else None
     if parts is None:
         return False
     return _spelled(parts[2]) in _COMMON[KINEMATIC]
@@ -165,7 +171,7 @@ def is_kinematic(given: object) -> bool:
 
 def is_per_minute(given: object) -> bool:
     """Whether `given` is text of a speed in revolutions per minute, such as "9000 rpm"."""
-    parts = _TEXT.fullmatch(given.strip()) if isinstance(given, str) else None
+    parts = _TEXT.fullmatch(_without_groups(given)) if isinstance(given, str) else None
     if parts is None:
         return False
     return _spelled(parts[2]) in (*_PER_MINUTE, "krpm")
@@ -179,6 +185,11 @@ def display(value: float, unit: str) -> str:
     fitting = [(name, one) for name, one, from_ in choices if abs(value) * (1 + 1e-9) >= from_]
     name, one = fitting[-1] if value else next((each for each in choices if each[1] == 1.0), choices[-1])[:2]
     return f"{value / one:.6g} {name}".rstrip()
+
+
+def _without_groups(text: str) -> str:
+    """Text of a quantity whose number has no marks between thousands."""
+    return _GROUPED.sub(lambda number: "".join(filter(str.isdigit, number[0])), text.strip(), count=1)
 
 
 def _spelled(unit_text: str) -> str:
@@ -219,7 +230,7 @@ def _to_si(number: float, unit_text: str, unit: str, remedy: str) -> float:
     if unit in _TABLES:
         factors = _TABLES[unit]
         key = re.sub(r"\s+", "", unit_text)
-        key = _SPEED_SPELLINGS.get(key, key) if unit == SPEED else key
+        key = {SPEED: _SPEED_SPELLINGS, ANGLE: _ANGLE_SPELLINGS}.get(unit, {}).get(key, key)
         if key in factors:
             return number if factors[key] == 1.0 else _round(number * factors[key])
         if key == "":
@@ -289,9 +300,11 @@ def _by_pint(number: float, unit_text: str, unit: str, remedy: str) -> float:
             _require_unit(registry, name.replace("°C", "degC"), remedy)
         return float(registry.Quantity(number, unit_text.replace("°C", "degC")).to(unit).magnitude)
     except pint.DimensionalityError:
-        raise ValueFault(
-            f'has the unit "{unit_text}", which cannot be turned into {readable(unit)}.', remedy
-        ) from None
+        force = _NAME.sub(lambda name: _WEIGHTS.get(name[0], name[0]), unit_text)
+        if force != unit_text and _reads(number, force, unit):
+            remedy = f'Write "{number:.15g} {force}": lb and oz are masses.'
+        problem = f'has the unit "{unit_text}", which cannot be turned into {readable(unit)}.'
+        raise ValueFault(problem, remedy) from None
     except pint.UndefinedUnitError:
         raise ValueFault(f'has the unit "{unit_text}", which is not known.', remedy) from None
     except ValueFault:

@@ -66,6 +66,13 @@ from frbcli.units import ANGLE, NUMBER, SPEED, TEMPERATURE_DIFFERENCE, ValueFaul
         ("3000 RPM", SPEED, 50.0),
         ("3000 min⁻¹", SPEED, 50.0),
         ("3000 tr/min", SPEED, 50.0),
+        ("120 000 rpm", SPEED, 2000.0),  # thousands apart
+        ("120'000.5 rpm", SPEED, 120000.5 / 60.0),
+        ("1_234_567 um", "m", 1.234567),
+        ('0.3"', "m", 7.62e-3),
+        ("30 degrees", ANGLE, math.pi / 6.0),
+        ("80 Celsius", "K", 353.15),
+        ("2 GPM", "m^3/s", 2.0 * 3.785411784e-3 / 60.0),
     ],
 )
 def test_reads_the_notation_of_case_files(text: str, unit: str, si: float) -> None:
@@ -116,6 +123,8 @@ def test_bare_numbers_are_si(unit: str) -> None:
         ("1 " + "x" * 100_000, SPEED, "does not fit"),
         ("3 m^^2", "m", "cannot be read"),
         ("2 m^99999999", "m", "cannot be read"),
+        ("120 0000 rpm", SPEED, "does not fit"),
+        ("1234 567 rpm", SPEED, "does not fit"),
         ("about 3 mm", "m", "not a number"),
         ("", "m", "not a number"),
         ("nan m", "m", "not a number"),
@@ -136,6 +145,16 @@ def test_faults_say_what_is_wrong_and_what_to_write(given: object, unit: str, pr
     assert problem in caught.value.problem
     assert '"20 mm"' in caught.value.remedy
     assert len(str(caught.value)) < 200
+
+
+@pytest.mark.parametrize(
+    ("given", "unit", "written"), [("100 lb/in", "N/m", "100 lbf/in"), ("1 ft-lb", "N*m", "1 ft*lbf")]
+)
+def test_a_mass_where_a_force_is_meant_has_its_remedy(given: str, unit: str, written: str) -> None:
+    with pytest.raises(ValueFault, match="cannot be turned") as caught:
+        quantity(given, unit)
+    assert f'"{written}"' in caught.value.remedy
+    assert quantity(written, unit) > 1.0
 
 
 @pytest.mark.parametrize(
