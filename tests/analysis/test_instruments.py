@@ -86,6 +86,14 @@ def test_rows_begin_where_a_block_is_whole(head: str, tmp_path: Path) -> None:
     assert run["speed_Hz"] == pytest.approx(20.0)
 
 
+def test_names_between_blanks_keep_their_units_in_brackets(tmp_path: Path) -> None:
+    lines = [line.replace(",", "  ") for line in PLAIN]
+    path = table(tmp_path / "a.txt", "% t [s]  x [um pp]  y (um pp)  n (rpm)", lines)
+    run = measured_run(path, Measurement("x [um pp]", y="y (um pp)", time="t", speed="n"))
+    is_the_motion(run)
+    assert "x [um pp] in um pp" in run.remarks[-1]
+
+
 def test_a_table_without_names_has_its_columns_by_number(tmp_path: Path) -> None:
     path = table(tmp_path / "a.csv", "", PLAIN)
     is_the_motion(measured_run(path, Measurement("2", y="3", time="1", speed="4", speed_unit_Hz=1 / 60)))

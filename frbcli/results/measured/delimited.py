@@ -30,8 +30,8 @@ _PARTS = rf"(?:({_DATE})[T ]\s*)?(\d\d?):(\d\d):(\d\d(?:[.,]\d*)?)\s*(AM|PM|am|p
 STAMP = re.compile(_PARTS)
 DATES = ("%Y-%m-%d", "%Y/%m/%d", "%d.%m.%Y", "%m/%d/%Y", "%d/%m/%Y")
 DAY_s, HALF_DAY_s = 86400.0, 43200.0
-COMMENT = "#"
-NUMBERED = re.compile(r"\s*#\s*[,;\t]")  # a line of names whose first column counts the rows
+COMMENTS = ("#", "%")
+NUMBERED = re.compile(r"\s*[#%]\s*[,;\t]")  # a line whose first column counts the rows, or is in %
 DELIMITERS = ("\t", ";", ",", " ")  # a comma after the others, for it may be a decimal one; any number of blanks
 MOST_COLUMNS = 1000
 LOOKED_AT = 1000  # lines from which delimiter and decimal mark are found
@@ -56,6 +56,7 @@ DECIMAL_COMMA = "If its numbers have a decimal comma, put semicolons between the
 
 _DIGITS = r"[+-]?(?:\d+{0}?\d*|{0}\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf|infinity)"
 _POINT, _COMMA = (re.compile(_DIGITS.format(mark), re.IGNORECASE) for mark in (r"\.", ","))
+_BLANKS = re.compile(r"\s+(?![\[(]|[^\[(]*[\])])")  # between fields, but none before or in a unit in brackets
 _BRACKETS = re.compile(r"[\[(](.*)[\])]")
 _IN_NAME = re.compile(r".*\S\s*[\[(]([^\[\]()]+)[\])]")
 _PEAKS = re.compile(r"\s*(?:pp|p-p|pk-pk|pkpk|pk|peak|rms)$")  # how an instrument measures, after the unit
@@ -184,7 +185,7 @@ def read_table(content: bytes) -> DelimitedTable:
         raise ValueError("it is empty")
     ending = [line for _, line in numbered[len(numbered) // 2 :]]  # which holds few lines from above the rows
     layout = _layout(ending[:: max(1, len(ending) // LOOKED_AT)], numbered[-2:][0][1])
-    comments = [line.lstrip().lstrip(COMMENT) for _, line in lines if _is_comment(line)]
+    comments = [line.lstrip().lstrip("".join(COMMENTS)) for _, line in lines if _is_comment(line)]
     head = _head([layout.split(line) for _, line in numbered], layout, comments)
     line_numbers, rows = zip(*_even_rows(numbered[head.begin :], layout.delimiter, len(head.names)), strict=True)
     import pandas as pd
@@ -197,13 +198,13 @@ def read_table(content: bytes) -> DelimitedTable:
 
 
 def _is_comment(line: str) -> bool:
-    return line.lstrip().startswith(COMMENT) and not NUMBERED.match(line)
+    return line.lstrip().startswith(COMMENTS) and not NUMBERED.match(line)
 
 
 def fields(line: str, delimiter: str) -> list[str]:
     """The fields of a line, without blanks around them."""
     if delimiter == " ":
-        return line.split()
+        return _BLANKS.split(line.strip()) if "[" in line or "(" in line else line.split()
     if '"' in line:
         try:
             return [field.strip() for field in next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])]
