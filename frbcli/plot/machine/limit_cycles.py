@@ -91,8 +91,8 @@ def _film(axes: Axes, diagram: LimitCycles, film: int) -> None:
             _bars(axes, *at, *errors)
     if not in_films:
         axes.set_ylim(0.0, ROOM * axes.get_ylim()[1])
-    quantity = "eccentricity" if in_films else "displacement over its length"
-    axes.set_ylabel(f"largest {quantity}\n{diagram.films[film].replace('_', ' ')}".rstrip())
+    quantity = "largest eccentricity" if in_films else "displacement over length"
+    axes.set_ylabel(f"{quantity}\n{diagram.films[film].replace('_', ' ')}".rstrip())
 
 
 def _drawn(diagram: LimitCycles) -> list[tuple[int, CycleBranch]]:
