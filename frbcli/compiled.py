@@ -498,9 +498,11 @@ def _read(read: Callable[[Any, Any], Any], signature: Any, target: Any) -> Any:
 
 
 def _write(write: Callable[[Any, Any], None], signature: Any, made: Any) -> None:
-    """Keep a kernel on disk; where it cannot be written, the process goes on without."""
+    """Keep a kernel on disk; where it cannot be written, the process goes on without. One that calls a kernel whose
+    compilation was interrupted in this process, as in a notebook, cannot be kept by numba: a RuntimeError."""
     try:
-        write(signature, made)
+        with suppress(RuntimeError):
+            write(signature, made)
     except OSError as error:
         _say_that_nothing_is_kept(error.strerror or str(error))
 

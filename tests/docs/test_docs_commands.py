@@ -267,7 +267,6 @@ def unknown_numbers(quoted_numbers: Sequence[float], printed: str) -> list[float
 
 # Sentences that quote what a command prints, and the command
 QUOTES = (
-    ("elements.md", "whirls from 114.9 Hz on", "stability seal"),
     ("limit-cycles.md", "The Hopf point at 177.19 Hz", "stability jeffcott"),
     ("limit-cycles.md", "the fold at 170.81 Hz", "limit-cycles jeffcott"),
     ("heat.md", "the inner film has 142 degC, the outer one 93 degC, and the oil carries 612",
