@@ -142,8 +142,8 @@ def test_small_motions_grow_as_their_eigenvalue_has_it(
     system: System, speed: float, stuck: bool, time: float, rough: bool
 ) -> None:
     """In the time loop, from beside rest on, along the eigenvector that grows fastest: at 4 Hz a ring on its way from
-    its shell, or back to it, until it is within 1e-3 of rest, at 120 Hz the whirl of a rotor in a ring that sticks, and at 16 Hz the slow motion
-    of a ring without summits, whose decay a constant speed of the ring would have as 12.6 1/s."""
+    its shell, or back to it, until 1e-3 of it is left, at 120 Hz the whirl of a rotor in a ring that sticks, and at
+    16 Hz the slow motion of a ring without summits, whose decay a constant speed of the ring would have as 12.6 1/s."""
     omega = 2.0 * math.pi * speed
     if not rough:
         system = replace(system, asperities=None)
