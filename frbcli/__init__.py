@@ -33,9 +33,9 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.errors import NotConverged as NotConverged
     from frbcli.errors import RunFileError as RunFileError
     from frbcli.linear.balance_quality import balance_quality as balance_quality
-    from frbcli.linear.critical_map import critical_map as critical_map
     from frbcli.linear.damped_modes import damped_modes as damped_modes
     from frbcli.linear.damped_modes import vibration_limits as vibration_limits
+    from frbcli.linear.modes import critical_map as critical_map
     from frbcli.linear.modes import natural_modes as natural_modes
     from frbcli.linear.response import response as response
     from frbcli.linear.sheets.ball import ball_bearing_sheet as ball_bearing_sheet
@@ -104,7 +104,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "draw_ring_speed": "frbcli.plot.axes:ring_speed",
     "draw_spectrum": "frbcli.plot.axes:spectrum",
     "draw_waterfall": "frbcli.plot.axes:waterfall",
-    "critical_map": "frbcli.linear.critical_map",
+    "critical_map": "frbcli.linear.modes",
     "damped_modes": "frbcli.linear.damped_modes",
     "find_events": "frbcli.analysis.events",
     "fit": "frbcli.studies.fit",

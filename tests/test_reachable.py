@@ -22,7 +22,6 @@ PACKAGE = Path(frbcli.__file__).parent
 PLAIN = {
     ("frbcli.film.rectangles.film_force", "solve_plain"): "frbcli.film.rectangles.modal",
     ("frbcli.film.rectangles.short", "short_pressure"): "frbcli.film.rectangles.short",
-    ("frbcli.elements.ball_force", "solve_plain"): "frbcli.rotor.port_function",  # which compiles the law
     ("frbcli.film.roughness.plain", "plain_touch"): "frbcli.film.roughness.asperities",
 }
 Name = tuple[str, str]  # module, name of what it defines

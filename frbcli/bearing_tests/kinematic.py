@@ -163,9 +163,8 @@ def _warm_film(case: Case, plan: KinematicPlan, omega: float, dissipated: Dissip
 
     def solve(viscosities: Array, clearances: Array) -> FilmHeat:
         power, flow = dissipated(*at(viscosities, clearances))
-        if case.heat is not None and case.heat.side_flow == "concentric":
-            flow = float(heat.concentric[0] * clearances[0] ** 3 / viscosities[0])
-        return FilmHeat(np.array([power]), np.array([flow]), np.array([omega]))
+        leaving = heat.side_flow(np.array([flow]), viscosities, clearances)
+        return FilmHeat(np.array([power]), leaving, np.array([omega]))
 
     steady = steady_heat(heat.model, ("",), solve, start, np.array([omega]))
     return WarmFilm(*at(steady.viscosities, steady.clearances), steady)

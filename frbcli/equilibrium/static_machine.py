@@ -139,7 +139,6 @@ class WarmMachines:
     def __init__(self, case: Case, plan: Plan, system: System) -> None:
         self._case, self._plan, self._system = case, plan, system
         self._heat: Heat = heat_of(case)
-        self._concentric = case.heat is not None and case.heat.side_flow == "concentric"
 
     def at(self, omega: float, path: Sequence[WarmMachine] = ()) -> WarmMachine:
         """The machine at omega rad/s, as those at other speeds, of which the last one is near, foresee it. Raises
@@ -162,9 +161,7 @@ class WarmMachines:
             resting = resting_position(system, omega, None, search, resting)
             bodies = np.concatenate([[omega], resting.ring_speeds])
             power, flow = _film_heat(system, resting, bodies)
-            if self._concentric:
-                flow = self._heat.concentric * clearances**3 / viscosities
-            return FilmHeat(power, flow, bodies)
+            return FilmHeat(power, self._heat.side_flow(flow, viscosities, clearances), bodies)
 
         steady = steady_heat(self._heat.model, system.names, solve, begin, speeds, slope)
         assert resting is not None

@@ -191,9 +191,8 @@ def _lumped(case: Case, system: System, heat: Heat) -> LumpedHeat:
     now = np.zeros((FILM_ROWS, count))
     now[SHARE], now[SHARE_OF_SUPPLY], now[CLEARANCE] = 1.0, 1.0, system.clearances
     viscosity = np.array([case.viscosity(place.geometry) for place in places])
-    by_formula = case.heat is not None and case.heat.side_flow == "concentric"
     return LumpedHeat(
-        model=arrays_of(model, viscosity, np.array(system.drags), heat.concentric, by_formula),
+        model=arrays_of(model, viscosity, np.array(system.drags), heat.concentric, heat.by_formula),
         ends=system.films.heat_ends(),
         state=state,
         last=np.zeros(CHANGES + n),

@@ -24,7 +24,7 @@ def slow(module, name):
     setattr(module, name, slower)
 """
 COMMANDS = {
-    "response": ("frbcli.linear.critical_map", "critical_map", ("jeffcott", *SHORT, "--speed", "50 Hz", "--map")),
+    "response": ("frbcli.linear.modes", "critical_map", ("jeffcott", *SHORT, "--speed", "50 Hz", "--map")),
     "stability": ("frbcli.linear.stability", "stability", ("jeffcott", *SHORT, "--speed", "50 Hz", "--no-picture")),
     "limit-cycles": ("frbcli.cycles.limit_cycles", "limit_cycles",
                      ("jeffcott", *SHORT, "--set", "speed.from=190 Hz", "--no-picture")),

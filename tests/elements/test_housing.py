@@ -19,8 +19,7 @@ from series_rotors import assert_eigenvalues, in_series
 import frbcli
 from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
 from frbcli.errors import InputError
-from frbcli.linear.critical_map import critical_map
-from frbcli.linear.modes import natural_modes
+from frbcli.linear.modes import critical_map, natural_modes
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability
 from frbcli.report.sketch import WIDTH, rotor_sketch

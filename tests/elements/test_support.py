@@ -21,8 +21,7 @@ from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
 from frbcli.cycles.limit_cycles import limit_cycles
 from frbcli.equilibrium.linearised import coefficients_of
 from frbcli.errors import InputError
-from frbcli.linear.critical_map import critical_map
-from frbcli.linear.modes import natural_modes
+from frbcli.linear.modes import critical_map, natural_modes
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability
 from frbcli.linear.stability_point import eigenvalues

@@ -18,8 +18,8 @@ from synthetic_run import Rotor, make_run
 import frbcli
 from frbcli.cli.main import frb
 from frbcli.errors import InputError
-from frbcli.linear.critical_map import critical_map
 from frbcli.linear.damped_modes import damped_modes
+from frbcli.linear.modes import critical_map
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability
 from frbcli.plot import style

@@ -50,8 +50,8 @@ from frbcli.linear.columns import (
     THRUST,
     TILTING,
 )
-from frbcli.linear.critical_map import CRITICAL_SPEEDS
 from frbcli.linear.damped_modes import API_POINTS, ISO_POINTS, MARGINS
+from frbcli.linear.modes import CRITICAL_SPEEDS
 from frbcli.results.columns import EVENTS, MACHINE_SIGNALS, PART_SIGNALS
 from frbcli.scene.machine.findings import FILM_LOADS, FILM_OPERATION, FILM_TILTS
 from frbcli.studies.against import DEVIATIONS, RIDGES

@@ -125,7 +125,7 @@ def command(
 
 def _figure(motion: Response, tracks: tuple[OrderTrack, ...], as_map: bool) -> Picture:
     """The critical speed map, or the response with the synchronous motion of a run."""
-    from frbcli.linear.critical_map import critical_map
+    from frbcli.linear.modes import critical_map
     from frbcli.plot.machine.response import response_figure
 
     if as_map:

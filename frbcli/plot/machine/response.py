@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 
 from frbcli.analysis.order_tracking import OrderTrack
 from frbcli.arrays import Array
-from frbcli.linear.critical_map import CriticalMap
 from frbcli.linear.critical_speeds import larger_semi_axis
+from frbcli.linear.modes import CriticalMap
 from frbcli.linear.response import BEYOND_GAP, DOUBTFUL_MOTION, SOUND, UNBALANCE, Response
 from frbcli.plot.style import (
     BAND,

@@ -47,16 +47,23 @@ class RingNodes:
 @dataclass(frozen=True)
 class Heat:
     """The model of a machine. nodes: names of all nodes, films first; rings; start (n,) K; concentric (F,): Q eta / C^3
-    of the formula of a concentric film, m Pa s / s; supplies (F,): temperatures of the oil that films are supplied
-    with, and walls: nodes of given temperature with it, in K or over time."""
+    of the formula of a concentric film, m Pa s / s, by which oil leaves the films if by_formula; supplies (F,):
+    temperatures of the oil that films are supplied with, and walls: nodes of given temperature with it, in K or over
+    time."""
 
     model: HeatModel
     nodes: tuple[str, ...]
     rings: tuple[RingNodes, ...]
     start: Array
     concentric: Array
+    by_formula: bool
     supplies: tuple[float | OverTime, ...]
     walls: tuple[tuple[int, float | OverTime], ...]
+
+    def side_flow(self, own: Array, viscosities: Array, clearances: Array) -> Array:
+        """(F,) m^3/s that leave the films: their own flow, or that of concentric films of these viscosities in Pa s
+        and clearances in m."""
+        return np.asarray(self.concentric * clearances**3 / viscosities) if self.by_formula else own
 
 
 def heat_of(case: Case, value: Callable[[float | OverTime], float] = largest) -> Heat:
@@ -130,7 +137,8 @@ class _Builder:
         )
         concentric = np.array([_concentric(self._case, place.geometry) for place in self._places])
         nodes, rings, walls = tuple(self._names), tuple(self._rings), tuple(self._walls)
-        return Heat(model, nodes, rings, np.array(self._start), concentric, supplies, walls)
+        by_formula = thermal.side_flow == "concentric"
+        return Heat(model, nodes, rings, np.array(self._start), concentric, by_formula, supplies, walls)
 
     def _bearings(self) -> list[str]:
         """The name of the bearing of each film between turning surfaces."""

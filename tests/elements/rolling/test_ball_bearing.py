@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from ball_bearings import STEEL, A, B
+from ball_bearings import STEEL, A, B, solve_plain
 from paths import DATA
 
 from frbcli.elements.ball import BallBearing, at_displacement
-from frbcli.elements.ball_force import ball_bearing_force, solve_plain
+from frbcli.elements.ball_force import ball_bearing_force
 from frbcli.linear.sheets.ball import rating_life, under_load
 
 BEARINGS = {"A": A, "B": B}

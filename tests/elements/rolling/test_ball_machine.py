@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from ball_bearings import solve_plain
 from marches import Result, control, march, start
 from scipy.integrate import quad
 from scipy.optimize import brentq
@@ -16,7 +17,7 @@ from scipy.optimize import brentq
 import frbcli
 from frbcli.case.reading.load import case_from_dict
 from frbcli.elements.ball import BallBearing, BallBearingElement, BallForce, at_displacement, row_in_tilt
-from frbcli.elements.ball_force import RINGS, ball, of_balls, solve_plain
+from frbcli.elements.ball_force import RINGS, ball, of_balls
 from frbcli.errors import InputError
 from frbcli.linear.sheets.ball import ball_bearing_sheet
 from frbcli.linear.stability import stability
