@@ -77,7 +77,7 @@ def stribeck_curve(case: Case, plan: KinematicPlan) -> StribeckCurve | None:
     has none at the speed of the test.
     """
     motion = case.motion
-    if motion is None or motion.load is None or not motion.speed or not case.contact.rough or not plan.form.solved:
+    if motion is None or motion.load is None or not motion.speed or not case.contact.rough:
         return None
     fast = replace(plan, cells=COARSE_CELLS) if plan.on_cells else plan
     point = partial(_point, case, fast, motion.load)

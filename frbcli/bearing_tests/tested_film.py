@@ -34,7 +34,6 @@ from frbcli.film.rectangles.end_flow import end_flow, make_end_flow
 from frbcli.film.rectangles.film import FilmForce, evaluate, make_film
 from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm, sealed_shape
 from frbcli.film.roughness.contact import Rubbing
-from frbcli.scene.forms.form import SHORT, FilmForm
 from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan
 
@@ -210,15 +209,13 @@ SOLVED = TestedFilm(  # on finite volumes, or the modal film of a rectangular ga
     lambda case, plan, motion: _on_summits(case, motion, film_moment(case, plan, motion, plan.cells)),
     film_course,
 )
-FILMS: dict[FilmForm, TestedFilm] = {
-    SHORT: TestedFilm(
-        partial(_rest, _rubbing(short_force)),
-        lambda case, plan, motion: _on_summits(case, motion, short_moment(plan, motion)),
-        lambda case, plan, path, times, _: short_course(plan, rubbing_of(case), path, times),
-    ),
-}
+SHORT = TestedFilm(
+    partial(_rest, _rubbing(short_force)),
+    lambda case, plan, motion: _on_summits(case, motion, short_moment(plan, motion)),
+    lambda case, plan, path, times, _: short_course(plan, rubbing_of(case), path, times),
+)
 
 
 def tested_film(plan: KinematicPlan) -> TestedFilm:
-    """The film of a planned test: here, and nowhere else, a form becomes a film."""
-    return FILMS.get(plan.form, SOLVED)
+    """The film of a planned test: of finite length or short."""
+    return SHORT if plan.theory == "short" else SOLVED

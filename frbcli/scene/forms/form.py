@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.grid import CHAIN_MODES, FINER, SAMPLES, Mesh
@@ -66,13 +65,8 @@ class FilmForm:
     static_cells: ClassVar[tuple[tuple[int, int], ...]] = ()
     solved: ClassVar[bool] = True  # whether there is a pressure, on a mesh whose error is known
     table_of_solutions: ClassVar[bool] = False  # whether it is tabulated from solutions on cells before a run
-    solved_each_call: ClassVar[bool] = False  # whether each call is expensive, so that fewer steps are worth it
     inclines: ClassVar[bool] = False  # whether its gaps may have a tilt, in machines at rest
     as_exact: ClassVar[float] = 1.0  # share of its cells along that are as exact in a film whose errors are tabulated
-    any_theory: ClassVar[bool] = False  # whether the theory of the short bearing applies to it, too
-    modal: ClassVar[bool] = False  # whether kinematic tests take the pressure from the modal film
-    theory_in_tests: ClassVar[str] = "finite"
-    parts: ClassVar[tuple[str, str]] = "cells", "around x along"  # of a film in kinematic tests, and what they count
     why: ClassVar[str] = "rectangular gap: the force turns with the line of centres"
     elements: ClassVar[str] = "quadratic elements"
     follows_supply: ClassVar[bool] = True  # whether its pressures may follow the supply's over time
@@ -141,49 +135,21 @@ class FilmForm:
             rows.append(("mesh", sizes, f"{self.elements}, axial x around; {films.mesh_why}"))
         return tuple(rows)
 
-    def about_oil(self, case: Case, law: type[Law]) -> str:
-        """What a law makes of the oil."""
-        if law.keeps_oil:
-            if law.published_form and is_published(case):
-                return "the oil is part of the state, and some is created"
-            return f"{'mass-conserving: ' if law.conserves else ''}the oil is part of the state"
-        if not law.cavitates:
-            return "the film does not cavitate"
-        return "oil is not conserved"
-
     def remedies(self, case: Case) -> tuple[str, ...]:
         """Settings that the case does not have yet with which its films are easier to solve, best first."""
         return ()
-
-    def parts_in_tests(self, case: Case) -> tuple[tuple[int, int], str] | None:
-        """Cells or elements (around, along) of a section in kinematic tests, and why; None where the tests choose
-        them."""
-        return None
-
-    def transport(self, case: Case) -> tuple[str, str, str] | None:
-        """The decision about the transport of oil: choice, value, reason."""
-        if is_published(case):
-            return "diffusion", case.film.two_phase.diffusion, DIFFUSIONS[case.film.two_phase.diffusion]
-        reason = "upwind flow through the faces of the cells: conserves oil, instead of an artificial diffusion"
-        return ("diffusion", "upwind", reason) if law_named(case.film.cavitation).published_form else None
-
-    def decision_in_tests(self, case: Case, law: type[Law]) -> tuple[str, str]:
-        """How the film of a kinematic test is computed: value and reason of a decision."""
-        if is_published(case):
-            return "finite volumes", PUBLISHED
-        if law.keeps_oil:
-            return "finite volumes", f"{law.name}: conserves oil and keeps it from moment to moment"
-        return "finite volumes", f"{law.name}: each moment is a steady film of its own"
 
     def mesh_of(self, plan: Plan) -> tuple[int, int]:
         """Elements or cells (along, around) of a plan, as accuracy.mesh has them."""
         return (plan.mesh.axial, plan.mesh.circumferential) if plan.cells is None else (plan.cells[1], plan.cells[0])
 
-    def mesh_text(self, plan: Plan) -> str:
-        """The mesh of a plan in words."""
-        if plan.cells is not None:
-            return "{} x {} cells".format(*plan.cells)
-        return f"{plan.mesh.axial} x {plan.mesh.circumferential} elements"
+
+def transport_of(case: Case) -> tuple[str, str, str] | None:
+    """The decision about the transport of oil: choice, value, reason."""
+    if is_published(case):
+        return "diffusion", case.film.two_phase.diffusion, DIFFUSIONS[case.film.two_phase.diffusion]
+    reason = "upwind flow through the faces of the cells: conserves oil, instead of an artificial diffusion"
+    return ("diffusion", "upwind", reason) if law_named(case.film.cavitation).published_form else None
 
 
 def cells_B(cells: tuple[int, int], films: int) -> float:
@@ -210,7 +176,6 @@ NO_FILM: FilmForm = NoForm("no film", SolveCounts(1.0, 1.0, 1.0, (1.0, 1.0)), 0.
 TABLE_s, TABLE_MODES = 3.2e-5, 14  # per element around and mode along; modes that cost as much as the lines
 MODES_s = 3e-9  # of the axial modes, per cube of the elements along
 DIRECT_s, STATE_s = 4.5e-7, 2e-3  # of a film solved at one state, per element around and mode along, and of any
-SHORT_POINTS = 96, 32  # around and along, in kinematic tests
 FIELD_ELEMENTS = 64  # around
 # Solves of a stage over the number in another whirl, where a full film is pressed, whose journal comes to 2e-4 of the
 # gap.
@@ -223,8 +188,6 @@ class TableForm(FilmForm):
     """lines: modes that cost as much as the evaluation of the table at its lines."""
 
     lines: int = 0
-
-    any_theory: ClassVar[bool] = True
 
     def pressed(self, plan: Plan) -> tuple[float, float]:
         full = plan.theory == "finite" and not law_named(plan.cavitation).cavitates
@@ -244,42 +207,15 @@ class TableForm(FilmForm):
 class FieldsForm(TableForm):
     """Fields that are clipped at every call."""
 
-    solved_each_call: ClassVar[bool] = True
-
     def solve_us(self, case: Case, plan: Plan) -> float:
         """See FilmForm: 0 next to films that are cheap."""
         return mean_us(plan.films, self, self.us / FIELD_ELEMENTS)
 
 
 @dataclass(frozen=True)
-class ModalForm(FilmForm):
-    """Modal films, of kinematic tests alone."""
-
-    modal: ClassVar[bool] = True
-
-    def decision_in_tests(self, case: Case, law: type[Law]) -> tuple[str, str]:
-        return self.name, f"{law.name} in a rectangular gap"
-
-
-@dataclass(frozen=True)
-class ShortForm(FilmForm):
-    """Films of the short bearing, of kinematic tests alone."""
-
-    theory_in_tests: ClassVar[str] = "short"
-    parts: ClassVar[tuple[str, str]] = "points", "around x along"
-
-    def parts_in_tests(self, case: Case) -> tuple[tuple[int, int], str] | None:
-        return SHORT_POINTS, "at which the pressure is given; the force is exact"
-
-    def decision_in_tests(self, case: Case, law: type[Law]) -> tuple[str, str]:
-        return self.name, f"{law.name} of the short bearing, set in the case"
-
-
-@dataclass(frozen=True)
 class ChainForm(FilmForm):
     """Films between axial grooves, solved at every call."""
 
-    solved_each_call: ClassVar[bool] = True
     why: ClassVar[str] = "no table: the grooves do not turn with the line of centres"
 
     def solve_us(self, case: Case, plan: Plan) -> float:
@@ -302,6 +238,5 @@ CLIPPED = TableForm("clipped exactly along z, 96 points around", SolveCounts(1.0
 TABLE = TableForm("table over eccentricity and direction", SolveCounts(1.0, 1.0, 1.6, (1.0, 2.0)), 0.35, TABLE_MODES)
 FIELDS = FieldsForm("tabulated fields, clipped at every call", SolveCounts(1.0, 1.0, 2.2, (1.2, 2.5)), 10.5)
 CHAINS = ChainForm("solved between the grooves at every call", SolveCounts(1.0, 1.0, 1.7, (3.3, 2.4)), 17.5)
-MODAL = ModalForm("modal, quadratic elements", SolveCounts(1.0, 1.0, 1.0, (1.0, 1.0)), 1e3)
-SHORT = ShortForm("closed form of the short bearing", SolveCounts(1.0, 1.0, 1.0, (1.0, 1.0)), 1.0)
+SOLVED_EACH_CALL = (CHAINS, FIELDS)  # each call is expensive, so that fewer steps are worth it
 MOST_EXPENSIVE_FIRST = (CHAINS, FIELDS, CLIPPED, TABLE, CLOSED_FORM)

@@ -23,7 +23,7 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import FINER
 from frbcli.scene.films import as_text, coupling_faults, film_places, is_published, misaligned
-from frbcli.scene.forms.form import PUBLISHED, FilmForm, SolveCounts, cells_B
+from frbcli.scene.forms.form import PUBLISHED, FilmForm, SolveCounts, cells_B, transport_of
 from frbcli.scene.gate.rule import (
     ALL,
     BEARING,
@@ -128,7 +128,7 @@ class CellForm(FilmForm):
         rows = [("film", f"{around} x {along} cells", f"finite volumes, around x along; {films.mesh_why}")]
         if films.eccentricity is not None:
             rows.append(("eccentricity", f"{films.eccentricity:.2f}", EXPECTED))
-        if is_published(case) and (transport := self.transport(case)) is not None:
+        if is_published(case) and (transport := transport_of(case)) is not None:
             rows += [("form", "published", PUBLISHED), transport]
         return tuple(rows)
 

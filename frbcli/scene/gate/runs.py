@@ -14,6 +14,7 @@ from frbcli.scene.films import (
     film_places,
     is_plain,
 )
+from frbcli.scene.forms.form import TableForm
 from frbcli.scene.forms.solutions import solution_fault
 from frbcli.scene.forms.tilted import CELLS
 from frbcli.scene.gate.rule import run_omega
@@ -25,7 +26,7 @@ def theory_faults(case: Case) -> Iterator[Fault]:
     """The short bearing is for half-Sommerfeld films on rectangles."""
     if case.film.theory != "short":
         return
-    if not form_of(case).any_theory:
+    if not isinstance(form_of(case), TableForm):
         remedy = "finite or auto for this cavitation model and supply; short is for half-sommerfeld on rectangles"
         yield _missing("film.theory", "short", remedy)
     elif any(place.geometry.supply.divides for place in film_places(case)):

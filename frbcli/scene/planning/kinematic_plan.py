@@ -13,9 +13,18 @@ from frbcli.errors import Fault, did_you_mean
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import label_of, law_named, names
 from frbcli.film.gap import Section, ends_at_ambient, whole_width
-from frbcli.scene.films import film_rectangle, film_section, least_gaps, make_law, places_of, slope_of, tilt_of, tilts
-from frbcli.scene.forms.form import MODAL, SHORT, FilmForm
-from frbcli.scene.forms.tilted import CELLS
+from frbcli.scene.films import (
+    film_rectangle,
+    film_section,
+    is_published,
+    least_gaps,
+    make_law,
+    places_of,
+    slope_of,
+    tilt_of,
+    tilts,
+)
+from frbcli.scene.forms.form import PUBLISHED, transport_of
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.kinematic import tested_case
 from frbcli.scene.gate.rule import KINEMATIC, ROTATION, motion_omega
@@ -29,6 +38,7 @@ TESTS = KINEMATIC
 STEADY_CELLS, FINE_CELLS = (128, 32), (240, 60)
 TILTED_CELLS, FINE_TILTED_CELLS = (192, 56), (240, 80)
 MOVING_CELLS = (64, 16)
+SHORT_POINTS = (96, 32)
 FINE_TARGET = 2e-4
 STEPS_PER_PERIOD = 600  # the moment at which a film is full again, and so its force, hangs on the step
 TWO_PI = 2.0 * math.pi
@@ -36,14 +46,16 @@ TWO_PI = 2.0 * math.pi
 
 @dataclass(frozen=True)
 class KinematicPlan:
-    """What will be modelled. form: how the film is computed; section: of the film, copied section.copies times;
-    rectangle: of the accurate modal film, None where grooves or bores are cut out; cells: (around, along); steps: per
-    period; rate: reference speed of the test in rad/s, for the penalty model on the dimensionless pressure; turning:
-    rad/s of the surface that the supply is in, whose frame the film is solved in; ramp: s, t_1 of (4.11)."""
+    """What will be modelled. theory: "finite" or "short"; modal: whether the pressure is from the modal film; section:
+    of the film, copied section.copies times; rectangle: of the accurate modal film, None where grooves or bores are cut
+    out; cells: (around, along); steps: per period; rate: reference speed of the test in rad/s, for the penalty model on
+    the dimensionless pressure; turning: rad/s of the surface that the supply is in, whose frame the film is solved in;
+    ramp: s, t_1 of (4.11)."""
 
     test: str
     cavitation: str
-    form: FilmForm
+    theory: str
+    modal: bool
     section: Section
     rectangle: Section | None
     cells: tuple[int, int]
@@ -61,12 +73,7 @@ class KinematicPlan:
     @property
     def remembers(self) -> bool:
         """Whether the film has a state of its own."""
-        return self.form.solved and self.law.keeps_oil
-
-    @property
-    def theory(self) -> str:
-        """The theory of the film."""
-        return self.form.theory_in_tests
+        return self.law.keeps_oil
 
     @property
     def label(self) -> str:
@@ -74,14 +81,9 @@ class KinematicPlan:
         return label_of(self.cavitation)
 
     @property
-    def modal(self) -> bool:
-        """Whether the pressure is from the modal film."""
-        return self.form.modal
-
-    @property
     def on_cells(self) -> bool:
         """Whether the force is from a finite-volume film."""
-        return self.form.by_cells
+        return self.theory == "finite" and not self.modal
 
 
 def kinematic_plan(case: Case, cavitation: str | None = None, test: str = ROTATION) -> KinematicPlan:
@@ -99,20 +101,22 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = ROTATI
     section = film_section(case, film)
     section = whole_width(section) if tilts(case) else section
     rectangle = film_rectangle(section)
-    form = _form(case, rectangle)
+    short, on_cells = case.film.theory == "short", rectangle is None or tilts(case) or case.contact.flow_factors
     law = law_named(case.film.cavitation)
     turning = TWO_PI * (motion.speed or 0.0) if film.supply.surface == "journal" else 0.0
-    own = form.parts_in_tests(case)
-    cells, why = own or _cells(case, test)
-    if own is None:
+    modal = law.closed and not (short or on_cells)
+    if short:
+        cells, why = SHORT_POINTS, "at which the pressure is given; the force is exact"
+    else:
+        cells, why = _cells(case, test)
         section = ends_at_ambient(section) if law.closed and film.ends == "free-to-air" else section
     steps = () if test == ROTATION else (Decision("steps", f"{STEPS_PER_PERIOD} per period", "of equal length"),)
-    decisions = (*_decisions(case, test, section, form, cells, why), *steps, *_transport(case, film, form))
+    decisions = (*_decisions(case, test, section, modal, cells, why), *steps, *_transport(case, film))
     if (summits := case.contact.about_summits) is not None:
         decisions += (Decision("contact", *summits),)
     return KinematicPlan(
-        test, asked, form, section, rectangle, cells, motion_omega(case), decisions,
-        turning=turning, ramp=film.supply.rise_time,
+        test, asked, "short" if short else "finite", modal, section, rectangle, cells, motion_omega(case),
+        decisions, turning=turning, ramp=film.supply.rise_time,
     )  # fmt: skip
 
 
@@ -133,13 +137,6 @@ def _name_faults(cavitation: str) -> Iterator[Fault]:
         yield Fault("--cavitation", cavitation, None, "is no model.", did_you_mean(cavitation, names()))
 
 
-def _form(case: Case, rectangle: Section | None) -> FilmForm:
-    if case.film.theory == "short":
-        return SHORT
-    on_cells = rectangle is None or tilts(case) or case.contact.flow_factors
-    return MODAL if not on_cells and law_named(case.film.cavitation).closed else CELLS
-
-
 def _cells(case: Case, test: str) -> tuple[tuple[int, int], str]:
     if case.accuracy.mesh is not None:
         return given_cells(case.accuracy.mesh)
@@ -152,14 +149,14 @@ def _cells(case: Case, test: str) -> tuple[tuple[int, int], str]:
 
 
 def _decisions(
-    case: Case, test: str, section: Section, form: FilmForm, cells: tuple[int, int], why: str
+    case: Case, test: str, section: Section, modal: bool, cells: tuple[int, int], why: str
 ) -> Iterator[Decision]:
-    """Gap, form and cells of a film of the program."""
+    """Gap, film and cells."""
     law, bearing = law_named(case.film.cavitation), case.bearings[0].films[0]
     yield _gap_decision(section, bearing, tilts(case))
     yield from _tilt_decision(case, test, section)
     yield from _profile_decision(section)
-    yield Decision("film", *form.decision_in_tests(case, law))
+    yield Decision("film", *_film(case, law, modal))
     if bearing.sealing:
         yield Decision("ends", *bearing.sealing)
     elif law.closed and bearing.ends == "free-to-air":
@@ -167,13 +164,25 @@ def _decisions(
         yield Decision("ends", "ambient pressure", reason)
     for film in unfed_films(case):
         yield Decision("supply", "starves" if film.keeps else "missing", film.reason)
-    parts, counted = form.parts
-    yield Decision(parts, f"{cells[0]} x {cells[1]}", f"{counted}; {why}")
+    parts = "points" if case.film.theory == "short" else "cells"
+    yield Decision(parts, f"{cells[0]} x {cells[1]}", f"around x along; {why}")
 
 
-def _transport(case: Case, bearing: FilmGeometry, form: FilmForm) -> Iterator[Decision]:
+def _film(case: Case, law: type[Law], modal: bool) -> tuple[str, str]:
+    if case.film.theory == "short":
+        return "closed form of the short bearing", f"{law.name} of the short bearing, set in the case"
+    if modal:
+        return "modal, quadratic elements", f"{law.name} in a rectangular gap"
+    if is_published(case):
+        return "finite volumes", PUBLISHED
+    if law.keeps_oil:
+        return "finite volumes", f"{law.name}: conserves oil and keeps it from moment to moment"
+    return "finite volumes", f"{law.name}: each moment is a steady film of its own"
+
+
+def _transport(case: Case, bearing: FilmGeometry) -> Iterator[Decision]:
     """How oil is transported, and in which frame."""
-    if (transport := form.transport(case)) is not None:
+    if (transport := transport_of(case)) is not None:
         yield Decision(*transport)
     if bearing.supply.surface == "journal":
         yield Decision("frame", "of the journal", "the feed holes turn with it and are at rest there")

@@ -24,6 +24,7 @@ from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing
 from frbcli.case.film import FilmGeometry
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
+from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import Mesh
 from frbcli.film.pad_geometry import COARSE, MESH
@@ -32,7 +33,17 @@ from frbcli.scene.changes import clearance_decisions, drive_decisions, input_dec
 from frbcli.scene.cost import ExpectedCost, clock, expected_cost, memory_B
 from frbcli.scene.coupling import FULL, coupling_named, plan_coupling
 from frbcli.scene.course import ERROR_ORDERS, reference_length, resolution_decisions
-from frbcli.scene.films import coupled, film_places, opens_to_groove, resistance, rings, turning_rings, turns_with_oil
+from frbcli.scene.films import (
+    coupled,
+    film_places,
+    is_published,
+    opens_to_groove,
+    resistance,
+    rings,
+    turning_rings,
+    turns_with_oil,
+)
+from frbcli.scene.forms.form import SOLVED_EACH_CALL
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import RUN
 from frbcli.scene.machine.rotor import element_decisions
@@ -250,8 +261,14 @@ def _about_target(case: Case, plan: Plan) -> Decision:
         reasons.append(f"budget of {accuracy.budget:g} s")
     why = ", ".join(reasons)
     cost = f"{needed:.1g}, {clock(_total_s(case, asked))}{knee}"
-    needs += f" {asked.form.mesh_text(asked)} and tolerance {asked.tolerance:.2g}: {cost}"
+    needs += f" {_mesh_text(asked)} and tolerance {asked.tolerance:.2g}: {cost}"
     return Decision("target", value, f"{needs}; chosen: {own}; {why}")
+
+
+def _mesh_text(plan: Plan) -> str:
+    if plan.cells is not None:
+        return "{} x {} cells".format(*plan.cells)
+    return f"{plan.mesh.axial} x {plan.mesh.circumferential} elements"
 
 
 def _total_s(case: Case, plan: Plan) -> float:
@@ -318,8 +335,19 @@ def _decide_models(case: Case, films: FilmChoice, decide: Decide) -> None:
     """Theory and cavitation."""
     decide("theory", films.theory, films.theory_why)
     for name, cavitation, is_set in _cavitations(case):
-        reason = films.form.about_oil(case, law_named(cavitation))
+        reason = _about_oil(case, law_named(cavitation))
         decide("cavitation", name, f"{'set in the case' if is_set else 'the default'}; {reason}")
+
+
+def _about_oil(case: Case, law: type[Law]) -> str:
+    """What a law makes of the oil."""
+    if law.keeps_oil:
+        if law.published_form and is_published(case):
+            return "the oil is part of the state, and some is created"
+        return f"{'mass-conserving: ' if law.conserves else ''}the oil is part of the state"
+    if not law.cavitates:
+        return "the film does not cavitate"
+    return "oil is not conserved"
 
 
 def _decide_scene(case: Case, decide: Decide) -> None:
@@ -448,7 +476,7 @@ def _time_integration(case: Case, films: FilmChoice, target: float, decide: Deci
         reason = "at least; more steps raise the cost more than they reduce the error"
         if by_cells:
             steps = CELL_STEPS
-        elif films.form.solved_each_call and target > FINE_TARGET:
+        elif films.form in SOLVED_EACH_CALL and target > FINE_TARGET:
             steps = SOLVED_STEPS
         else:
             reason = "at least"
