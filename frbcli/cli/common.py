@@ -234,6 +234,10 @@ def _console(stream: TextIO) -> Console:
     )
 
 
+settings_option = click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", shell_complete=complete_key,
+                               help=f"{SETTING} Repeatable.")  # fmt: skip
+
+
 def case_argument(
     function: Function, load: Callable[..., object] | None = None, metavar: str = "CASE"
 ) -> Function:

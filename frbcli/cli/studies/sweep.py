@@ -14,7 +14,7 @@ from frbcli.cli.common import Terminal, output_options
 from frbcli.cli.files import INPUT, OUTPUT_FOLDER, check_outputs, force_option, forced, here
 from frbcli.cli.options import SPEED_OPTION, Command, complete_case, gathered, look_options
 from frbcli.cli.progress import Display, display, draw, picture_switch
-from frbcli.cli.runs.transient import ENDED_EARLY, EXIT_CODES
+from frbcli.cli.transient import ENDED_EARLY, EXIT_CODES
 from frbcli.errors import input_error
 from frbcli.results.records import WHOLE
 from frbcli.units import SpeedUnit
