@@ -290,7 +290,7 @@ def _animate(
 
 def _law(source: str, settings: tuple[str, ...], output: Path | None, terminal: Terminal) -> None:
     from frbcli.case.reading.load import load_case
-    from frbcli.plot.machine.law import law_figure
+    from frbcli.plot.machine.film import law_figure
 
     case = load_case(source, settings)
     target = output or here(case.name, f"-{LAW}.png")
@@ -303,10 +303,9 @@ def _figure(
     what: str, runs: Sequence[Run], span: tuple[float | None, float | None], over: Over, point: str | None
 ) -> Picture:
     """point: the point or film that is asked for."""
+    from frbcli.plot.motion import displacement_figure, eccentricity_figure, orbit_figure, quantity_figure
     from frbcli.plot.moving import film_moments_figure
-    from frbcli.plot.run.motion import displacement_figure, eccentricity_figure, orbit_figure
-    from frbcli.plot.run.quantities import quantity_figure
-    from frbcli.plot.run.summary import ring_speed_figure, summary_figure
+    from frbcli.plot.summary import ring_speed_figure, summary_figure
 
     if what == "summary":
         return summary_figure(runs[0])

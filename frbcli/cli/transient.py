@@ -128,7 +128,7 @@ def transient(command: str, run_case: Transient, case: Case, options: RunOptions
         }
     )
     if options.picture and len(run) > 1:
-        from frbcli.plot.run.summary import summary_figure
+        from frbcli.plot.summary import summary_figure
 
         draw(terminal, lambda: summary_figure(run), next_to(path, SUMMARY))
     interrupted = verified is not None and verified["status"] == "interrupted"

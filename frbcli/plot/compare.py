@@ -14,7 +14,7 @@ from frbcli.analysis.resonance import Ridges
 from frbcli.analysis.signals import films
 from frbcli.case.run import speed_unit_of
 from frbcli.film.cavitation.table import label_of
-from frbcli.plot.run.motion import Line, draw_largest
+from frbcli.plot.motion import Line, draw_largest
 from frbcli.plot.signals import MICRO, ends
 from frbcli.plot.style import (
     BLACK,

@@ -33,11 +33,11 @@ PICTURES = {  # class of a result: module in this room, and its function
     "LimitCycles": "machine.limit_cycles:limit_cycles_figure",
     "Modes": "machine.modes:modes_figure",
     "Response": "machine.response:response_figure",
-    "Run": "run.summary:summary_figure",
+    "Run": "summary:summary_figure",
     "Stability": "machine.modes:campbell_figure",
-    "StabilityMap": "machine.stability_map:stability_map_figure",
+    "StabilityMap": "machine.limit_cycles:stability_map_figure",
     "Sweep": "sweep:sweep_figure",
-    "ThrustSheet": "machine.thrust:thrust_figure",
+    "ThrustSheet": "machine.bearing:thrust_figure",
 }
 OVERLAYS = {  # of several results over each other
     "BearingSheet": "axes:bearing",

@@ -29,8 +29,7 @@ from frbcli.plot.style import (
     styled,
 )
 from frbcli.studies.ladder import AccuracyLadder, Rung, RungResult
-from frbcli.studies.sweep.scatter import Scatter
-from frbcli.studies.sweep.sweep import Sweep, SweepPoint
+from frbcli.studies.sweep import Scatter, Sweep, SweepPoint
 
 KINDS = {"runup": ("onset", "onset of the whirl"), "stability": ("threshold", "threshold of stability")}
 MOST_TICKS, MOST_DIGITS = 12, 6

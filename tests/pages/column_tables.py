@@ -58,7 +58,7 @@ from frbcli.studies.against import DEVIATIONS, RIDGES
 from frbcli.studies.compare import HEAT, VARIANT
 from frbcli.studies.fit import FITTED
 from frbcli.studies.ladder import LADDER_COLUMNS
-from frbcli.studies.sweep.sweep import point_columns
+from frbcli.studies.sweep import point_columns
 
 
 def of_pandas(columns: Columns) -> Columns:

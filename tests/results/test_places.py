@@ -65,7 +65,7 @@ def nothing_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(March, "__init__", fail)
     for place in ("linear.stability.stability", "linear.sheets.bearing.bearing_sheet", "linear.response.response",
                   "cycles.limit_cycles.limit_cycles", "studies.fit.fit", "studies.accuracy.accuracy",
-                  "studies.sweep.sweep.sweep", "bearing_tests.kinematic._test"):  # fmt: skip
+                  "studies.sweep.sweep", "bearing_tests.kinematic._test"):  # fmt: skip
         monkeypatch.setattr(f"frbcli.{place}", fail)
 
 

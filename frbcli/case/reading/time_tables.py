@@ -22,7 +22,7 @@ from frbcli.errors import InputError
 from frbcli.units import SPEED, ValueFault, quantity
 
 if TYPE_CHECKING:
-    from frbcli.results.measured.columns import Columns
+    from frbcli.results.measured_columns import Columns
 
 
 MOST_NUMBERS = 60_000  # of all tables of a case, whose text a run file holds
@@ -74,7 +74,7 @@ def with_time_tables(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any]
 
 def read_table(path: Path, wanted: TableKind, most: int = MOST_NUMBERS) -> dict[str, list[float]]:
     """The columns time, x and, where there are two, y of a file, in SI. Raises Refused."""
-    from frbcli.results.measured.reading import read_columns
+    from frbcli.results.measured import read_columns
 
     try:
         columns = read_columns(path)
@@ -101,7 +101,7 @@ def read_tacho(path: Path, name: str, pulses: int) -> dict[str, list[float]]:
     import numpy as np
 
     from frbcli.analysis.order_tracking import tacho_speed
-    from frbcli.results.measured.reading import read_columns
+    from frbcli.results.measured import read_columns
 
     if not isinstance(pulses, int) or pulses < 1:
         raise Refused(f"has {pulses} pulses per revolution.", "Write e.g. pulses = 1.")
@@ -125,7 +125,7 @@ def read_tacho(path: Path, name: str, pulses: int) -> dict[str, list[float]]:
 
 def _plain(columns: Columns) -> Iterator[tuple[str, str]]:
     """The names of the columns: as people write them, in small letters and without unit, and as in the file."""
-    from frbcli.results.measured.delimited import without_unit
+    from frbcli.results.delimited import without_unit
 
     for name in columns.values:
         plain = without_unit(name).strip().lower()

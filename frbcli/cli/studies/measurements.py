@@ -92,7 +92,7 @@ def measured_options(function: Function) -> Function:
 
 def show_columns(path: Path, terminal: Terminal) -> None:
     """A table of what a measured file holds, a row for each column, with its unit, or what it is if it is none."""
-    from frbcli.results.measured.reading import read_columns
+    from frbcli.results.measured import read_columns
 
     listed = read_columns(path).listed()
     rows = [(row["name"], " x ".join(map(str, row["shape"])), row["unit"] or "-", row["kind"]) for row in listed]
@@ -135,7 +135,7 @@ def _measurement(context: click.Context, _: click.Parameter, clearance: float | 
 def run_of(path: Path, measurement: Measurement | None, terminal: Terminal, relative: bool = True) -> Run:
     """The run in a file: a computed one, or a measurement, whose units are remarked. relative: whether amplitudes refer
     to a clearance. Raises as read_run and measured_run do."""
-    from frbcli.results.measured.reading import READERS, read_columns
+    from frbcli.results.measured import READERS, read_columns
 
     if not path.exists() and path.suffix.lower() in READERS:
         read_columns(path)  # which raises: a file that is not there is said before its options are
@@ -355,7 +355,7 @@ def balance_document(balancing: Balancing, run_file: Path) -> dict[str, object]:
 
 def _recorded(path: Path, measurement: Measurement | None, terminal: Terminal) -> Run:
     """The run in a file, of a measurement with all probes of --x and --y."""
-    from frbcli.results.measured.reading import READERS
+    from frbcli.results.measured import READERS
 
     across, up = ([] if text is None else [name.strip() for name in text.split(",")]
                   for text in ((None, None) if measurement is None else (measurement.x, measurement.y)))  # fmt: skip
