@@ -97,7 +97,7 @@ HARD_CASE = (
 
 def list_hard(terminal: Terminal) -> None:
     """The table of all hard cases."""
-    from frbcli.case.reading.hard import hard_cases
+    from frbcli.case.reading.shipped import hard_cases
 
     table = table_of(HARD_CASE, hard_cases())
     terminal.show("hard cases", table, LIST)
@@ -108,7 +108,7 @@ def list_hard(terminal: Terminal) -> None:
 def hard_text(name: str) -> str:
     """The case file of a hard case: its shipped case with the settings put in. Raises InputError for an unknown name;
     a case that has to be refused is given as its base and its settings."""
-    from frbcli.case.reading.hard import hard_cases
+    from frbcli.case.reading.shipped import hard_cases
 
     (hard,) = hard_cases([name])
     settings = "".join(f"#   --set '{text}'\n" for text in hard.settings)

@@ -9,11 +9,10 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from frbcli.case.files.coefficient_files import with_coefficient_files
 from frbcli.case.model import Model
 from frbcli.case.oil import with_grade
 from frbcli.case.over_time import machine_breaches
-from frbcli.case.reading.coefficient_files import with_housing_file
+from frbcli.case.reading.files import with_coefficient_files, with_housing_file
 from frbcli.case.reading.ross import with_rotor_file
 from frbcli.case.reading.settings import DEEPEST, TomlFault, as_tables, parse, to_toml, with_setting, with_value
 from frbcli.case.reading.shipped import find_shipped, nearest, shipped_names

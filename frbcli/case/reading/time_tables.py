@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from frbcli.arrays import Array
 from frbcli.case.model import SMALLEST, Model, unit_of
 from frbcli.case.over_time import OverTime
-from frbcli.case.reading.coefficient_files import Refused, with_file
+from frbcli.case.reading.files import Refused, with_file
 from frbcli.case.reading.tables import Breach, table, tables
 from frbcli.case.reading.tables import Path as Key
 from frbcli.errors import InputError

@@ -11,8 +11,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from frbcli.case.elements import EMPTY_MATRIX, OPPOSED, WITHOUT_FILM, BallBearingKeys
-from frbcli.case.files.coefficient_files import MASSES, column_lengths, is_negative, over_speed_problem
 from frbcli.case.over_time import values_of
+from frbcli.case.reading.files import MASSES, column_lengths, is_negative, over_speed_problem
 from frbcli.case.reading.tables import Breach, Path, number, ring_films, table, tables
 from frbcli.case.rotor import OF_SECTIONS
 from frbcli.units import ANGLE, NUMBER, SPEED, display
