@@ -16,6 +16,7 @@ from pydantic import Discriminator, Field, Tag, create_model
 from pydantic.fields import FieldInfo
 
 from frbcli.case.model import (
+    PLAIN,
     Angle,
     BoundaryFriction,
     Clearance,
@@ -37,6 +38,7 @@ from frbcli.case.model import (
     Temperature,
     Viscosity,
     WearCoefficient,
+    form_of,
 )
 from frbcli.case.oil import ROOM_TEMPERATURE
 from frbcli.case.supplies import NoSupply, Supply
@@ -136,8 +138,8 @@ class ClearanceStep(Model):
 
 
 AnyClearance = Annotated[
-    Annotated[Clearance, Tag("(warm)")] | Annotated[ColdClearance, Tag("(cold)")],
-    Discriminator(lambda given: "(cold)" if isinstance(given, dict | ColdClearance) else "(warm)"),
+    Annotated[Clearance, Tag(PLAIN)] | Annotated[ColdClearance, Tag("(ColdClearance)")],
+    Discriminator(lambda given: form_of(given, ColdClearance)),
 ]
 
 
@@ -172,17 +174,11 @@ class PartBath(Model):
     bath_level: Position = Field(description="height y of the oil over the middle of the shell")
 
 
-def _ends_form(given: object) -> str:
-    if isinstance(given, PartBath) or (isinstance(given, dict) and "bath_level" in given):
-        return "(bath)"
-    return "(sealed)" if isinstance(given, dict | SealedEnds) else "(open)"
-
-
 AnyEnds = Annotated[
-    Annotated[Literal["free-to-air", "oil-bath"], Tag("(open)")]
-    | Annotated[SealedEnds, Tag("(sealed)")]
-    | Annotated[PartBath, Tag("(bath)")],
-    Discriminator(_ends_form),
+    Annotated[Literal["free-to-air", "oil-bath"], Tag(PLAIN)]
+    | Annotated[SealedEnds, Tag("(SealedEnds)")]
+    | Annotated[PartBath, Tag("(PartBath)")],
+    Discriminator(lambda given: form_of(given, PartBath, SealedEnds)),
 ]
 
 

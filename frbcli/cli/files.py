@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from frbcli.cli.options import WrittenOption
+
 if TYPE_CHECKING:
     from frbcli.results.write import Kind
 
@@ -34,16 +36,15 @@ class InputFile(click.Path):
         return path
 
 
-class InputFiles(click.ParamType[tuple[Path, ...]]):
+class InputFiles(WrittenOption):
     """Several such files, separated by commas."""
 
     name = "files"
 
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[Path, ...]:
+    def read(self, text: str) -> tuple[Path, ...]:
         """The paths, which the command then does not write."""
-        if isinstance(value, tuple):
-            return value
-        return tuple(INPUT.convert(name.strip(), param, ctx) for name in str(value).split(",") if name.strip())
+        context = click.get_current_context(silent=True)
+        return tuple(INPUT.convert(name.strip(), None, context) for name in text.split(",") if name.strip())
 
 
 class OutputFile(click.Path):

@@ -52,8 +52,23 @@ COMMON = ("rotor.unbalance", "bearing.clearance", "oil.viscosity", "film.theory"
           "speed.to", "speed.duration", "accuracy.target", "output.step")  # fmt: skip
 
 
+class WrittenOption(click.ParamType[Any]):
+    """A value that is written as text; a default, which has its form already, stays."""
+
+    def read(self, text: str) -> Any:
+        """The value of a text. Raises ValueError with what is wrong."""
+        raise ValueError(text)
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The value of an option, which fails where the text is none."""
+        try:
+            return self.read(value) if isinstance(value, str) else value
+        except ValueError as fault:
+            self.fail(f"{value!r} {fault}", param, ctx)
+
+
 @dataclass(frozen=True)
-class QuantityOption(click.ParamType[float]):
+class QuantityOption(WrittenOption):
     """A quantity with a unit, as in the example; a bare number is in `unit`, SI. positive: it must be above 0."""
 
     name: str
@@ -61,20 +76,19 @@ class QuantityOption(click.ParamType[float]):
     example: str
     positive: bool = True
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """The number of a quantity in `unit`. Fails the option for anything else."""
+    def read(self, text: str) -> Any:
+        """The number of a quantity in `unit`."""
         from frbcli.units import is_per_minute, quantity
 
+        given: object = text
         with suppress(ValueError):  # then it has a unit
-            value = float(str(value))
-        try:
-            number = quantity(value, self.unit, self.example)
-        except ValueError as fault:
-            self.fail(f"{value!r} {fault}", param, ctx)
-        if self.unit == "Hz" and ctx is not None and is_per_minute(value):
-            ctx.meta[PER_MINUTE] = True
+            given = float(text)
+        number = quantity(given, self.unit, self.example)
+        context = click.get_current_context(silent=True)
+        if self.unit == "Hz" and context is not None and is_per_minute(text):
+            context.meta[PER_MINUTE] = True
         if self.positive and number <= 0.0:
-            self.fail(f'{value!r} is not greater than 0. Write e.g. "{self.example}".', param, ctx)
+            raise ValueError(f'is not greater than 0. Write e.g. "{self.example}".')
         return number
 
 
@@ -82,10 +96,10 @@ class QuantityOption(click.ParamType[float]):
 class UnitOption(QuantityOption):
     """A unit, alone, such as "um", or as a multiple of one, such as "125 um"."""
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
+    def read(self, text: str) -> Any:
         """The size of the unit in `unit`: 1e-6 for "um" in m."""
-        text = str(value).strip()
-        return super().convert(f"1 {text}" if text[:1].isalpha() or text.startswith("1/") else value, param, ctx)
+        text = text.strip()
+        return super().read(f"1 {text}" if text[:1].isalpha() or text.startswith("1/") else text)
 
 
 def range_ends(text: str) -> tuple[str, str] | None:
@@ -100,26 +114,24 @@ def range_ends(text: str) -> tuple[str, str] | None:
 class RangeOption(QuantityOption):
     """Two quantities, as "8000..12000 rpm": a unit at the end holds for both."""
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+    def read(self, text: str) -> Any:
         """The lower and the upper one in `unit`."""
-        if isinstance(value, tuple):
-            return value
-        texts = range_ends(str(value))
+        texts = range_ends(text)
         if texts is None:
-            self.fail(f'{value!r} is no range. Write e.g. "{self.example}".', param, ctx)
-        ends = [super(RangeOption, self).convert(end, param, ctx) for end in texts]
-        if ends[0] > ends[1]:
-            self.fail(f'{value!r} does not ascend. Write e.g. "{self.example}".', param, ctx)
-        return ends[0], ends[1]
+            raise ValueError(f'is no range. Write e.g. "{self.example}".')
+        low, high = map(super().read, texts)
+        if low > high:
+            raise ValueError(f'does not ascend. Write e.g. "{self.example}".')
+        return low, high
 
 
 @dataclass(frozen=True)
 class SupportOption(QuantityOption):
     """The support of a rotor: "free", "bearings" as in the case, or a stiffness."""
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+    def read(self, text: str) -> Any:
         """The word, or the stiffness in `unit`."""
-        return value if value in ("free", "bearings") else super().convert(value, param, ctx)
+        return text if text in ("free", "bearings") else super().read(text)
 
 
 @dataclass(frozen=True)
@@ -131,35 +143,30 @@ class KeyRange:
     high: str
 
 
-class KeyRangeOption(click.ParamType[KeyRange]):
+class KeyRangeOption(WrittenOption):
     """A key and its range, as bearing.clearance=30..45 um."""
 
     name = "range"
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> KeyRange:
-        """Key and range. Fails the option for anything else."""
-        if isinstance(value, KeyRange):
-            return value
-        key, _, span = str(value).partition("=")
+    def read(self, text: str) -> KeyRange:
+        """Key and range."""
+        key, _, span = text.partition("=")
         ends = range_ends(span)
         if not key.strip() or ends is None:
-            self.fail(f"{value!r} is no range of a key. Write e.g. bearing.clearance='30..45 um'.", param, ctx)
+            raise ValueError("is no range of a key. Write e.g. bearing.clearance='30..45 um'.")
         return KeyRange(key.strip(), *ends)
 
 
-class GradeOption(click.ParamType[float]):
+class GradeOption(WrittenOption):
     """A balance quality grade, in mm/s."""
 
     name = "grade"
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """Its number. Fails the option for anything else."""
+    def read(self, text: str) -> float:
+        """Its number."""
         from frbcli.linear.balance_quality import read_grade
 
-        try:
-            return read_grade(str(value))
-        except ValueError as fault:
-            self.fail(f"{value!r} {fault}", param, ctx)
+        return read_grade(text)
 
 
 KEY_RANGE = KeyRangeOption()
@@ -172,30 +179,27 @@ LOAD_OPTION = QuantityOption("load", "N", "30 N")
 STIFFNESS_OPTION = SupportOption("stiffness", "N/m", "5e6 N/m")
 
 
-class Names(click.ParamType[tuple[str, ...]]):
+class Names(WrittenOption):
     """Names separated by commas."""
 
     name = "names"
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:  # noqa: ARG002
+    def read(self, text: str) -> tuple[str, ...]:
         """The names without spaces around them."""
-        names = value if isinstance(value, tuple) else str(value).split(",")
-        return tuple(name.strip() for name in names if name.strip())
+        return tuple(name.strip() for name in text.split(",") if name.strip())
 
 
-class Numbers(click.ParamType[tuple[float, ...]]):
+class Numbers(WrittenOption):
     """Numbers separated by commas."""
 
     name = "numbers"
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...]:
-        """The numbers in their order. Fails the option for anything else."""
-        if isinstance(value, tuple):
-            return value
+    def read(self, text: str) -> tuple[float, ...]:
+        """The numbers in their order."""
         try:
-            return tuple(float(number) for number in str(value).split(","))
+            return tuple(map(float, text.split(",")))
         except ValueError:
-            self.fail(f"{value} is not a list of numbers, such as 1,0.5.", param, ctx)
+            raise ValueError("is not a list of numbers, such as 1,0.5.") from None
 
 
 def _models(name: str, what: str, of: str, default: str = "as in CASE") -> Callable[[Function], Function]:
@@ -304,53 +308,42 @@ class Look:
     rpm: bool = False
 
 
-@dataclass(frozen=True)
-class Size(click.ParamType[tuple[float, float]]):
+class Size(WrittenOption):
     """Width and height, such as "160 mm x 90 mm" or "160x90 mm", in inches."""
 
-    name: str = "size"
+    name = "size"
 
-    def convert(
-        self, value: object, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[float, float]:
-        """Width and height in inches. Fails the option for anything but WIDTHxHEIGHT."""
+    def read(self, text: str) -> tuple[float, float]:
+        """Width and height in inches."""
         from frbcli.units import quantity
 
-        if isinstance(value, tuple):
-            return value
-        width, by, height = str(value).partition("x")
+        width, by, height = text.partition("x")
         if not by:
-            self.fail(f'{value!r} is not a width and a height. Write e.g. "160 mm x 90 mm".', param, ctx)
-        unit = "".join(letter for letter in height if letter.isalpha())
+            raise ValueError('is not a width and a height. Write e.g. "160 mm x 90 mm".')
+        if not any(letter.isalpha() for letter in width):
+            width += " " + "".join(letter for letter in height if letter.isalpha())
         try:
-            if not any(letter.isalpha() for letter in width):
-                width = f"{width} {unit}"
-            sides = tuple(quantity(side.strip(), "m", "160 mm") / INCH for side in (width, height))
+            across, high = (quantity(side.strip(), "m", "160 mm") / INCH for side in (width, height))
         except ValueError as fault:
-            self.fail(f'{value!r} {fault} Write e.g. "160 mm x 90 mm".', param, ctx)
-        if not all(0.5 <= side <= 60.0 for side in sides):
-            self.fail(f"{value!r} is no size of a picture: 13 mm to 1500 mm.", param, ctx)
-        return sides[0], sides[1]
+            raise ValueError(f'{fault} Write e.g. "160 mm x 90 mm".') from None
+        if not (0.5 <= across <= 60.0 and 0.5 <= high <= 60.0):
+            raise ValueError("is no size of a picture: 13 mm to 1500 mm.")
+        return across, high
 
 
-@dataclass(frozen=True)
-class Span(click.ParamType[tuple[float, float]]):
+class Span(WrittenOption):
     """Two numbers, the lower one first, separated by a comma."""
 
-    name: str = "span"
+    name = "span"
 
-    def convert(
-        self, value: object, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[float, float]:
+    def read(self, text: str) -> tuple[float, float]:
         """The lower and the upper number."""
-        if isinstance(value, tuple):
-            return value
         try:
-            low, high = (float(number) for number in str(value).split(","))
+            low, high = map(float, text.split(","))
         except ValueError:
-            self.fail(f"{value!r} is not two numbers, such as 0,300.", param, ctx)
+            raise ValueError("is not two numbers, such as 0,300.") from None
         if not low < high:
-            self.fail(f"{value!r}: the lower number comes first.", param, ctx)
+            raise ValueError("does not ascend: the lower number comes first.")
         return low, high
 
 

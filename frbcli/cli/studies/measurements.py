@@ -21,6 +21,7 @@ from frbcli.cli.options import (
     KeyRange,
     Names,
     UnitOption,
+    WrittenOption,
     signal_option,
     speeds_option,
 )
@@ -42,19 +43,19 @@ _UNITS = {kind: UnitOption(kind, unit, example) for kind, unit, example in
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-class Rate(click.ParamType["float | str"]):
+class Rate(WrittenOption):
     """Samples per second, or the name of a single number of the file."""
 
     name = "rate"
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float | str:
+    def read(self, text: str) -> float | str:
         """Samples per second, 1/s, or the name."""
         try:
-            rate = float(str(value))
+            rate = float(text)
         except ValueError:
-            return str(value)
+            return text
         if not rate > 0.0:
-            self.fail(f"{value} samples per second are not above 0.", param, ctx)
+            raise ValueError("samples per second are not above 0.")
         return rate
 
 
@@ -255,31 +256,27 @@ EXAMPLE = 'a=trial.csv:"5 g*mm@30deg"'
 MOST_ROWS = 24  # of points at speeds; JSON and CSV have all
 
 
-class TrialOption(click.ParamType[tuple[str, Path, float, float]]):
+class TrialOption(WrittenOption):
     """A plane, the file of its trial run, the unbalance and its angle, as a=trial.csv:5 g*mm@30deg."""
 
     name = "trial"
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Plane, path, kg m and degrees. Fails the option for anything else."""
+    def read(self, text: str) -> tuple[str, Path, float, float]:
+        """Plane, path, kg m and degrees."""
         from frbcli.units import ANGLE, quantity
 
-        if isinstance(value, tuple):
-            return value
-        plane, equals, rest = str(value).partition("=")
+        plane, equals, rest = text.partition("=")
         file, colon, given = rest.rpartition(":")
         size, at, angle = given.rpartition("@")
         if not (plane.strip() and equals and file.strip() and colon and at):
-            self.fail(f"{value!r} is no trial run. Write e.g. {EXAMPLE}.", param, ctx)
-        try:
-            unbalance = quantity(size.strip(), "kg*m", "5 g*mm")
-            turned = quantity(angle.strip(), ANGLE, "30 deg")
-        except ValueError as fault:
-            self.fail(f"{value!r} {fault}", param, ctx)
+            raise ValueError(f"is no trial run. Write e.g. {EXAMPLE}.")
+        unbalance = quantity(size.strip(), "kg*m", "5 g*mm")
+        turned = quantity(angle.strip(), ANGLE, "30 deg")
         if not unbalance > 0.0:
-            self.fail(f"{value!r} has no unbalance above 0.", param, ctx)
+            raise ValueError("has no unbalance above 0.")
         degrees = quantity("1 rad", ANGLE) * turned / quantity("1 deg", ANGLE)
-        return plane.strip(), INPUT.convert(file.strip(), param, ctx), unbalance, degrees
+        path = INPUT.convert(file.strip(), None, click.get_current_context(silent=True))
+        return plane.strip(), path, unbalance, degrees
 
 
 @click.command(cls=Command)
