@@ -15,8 +15,7 @@ from pathlib import Path
 import click
 
 from frbcli.cli.common import Terminal, output_options, settings_option
-from frbcli.cli.files import CASE_FILE, check_outputs, force_option, forced
-from frbcli.cli.options import Command, complete_case
+from frbcli.cli.options import CASE_FILE, Command, check_outputs, complete_case, force_option, forced
 from frbcli.cli.progress import display
 from frbcli.columns import Column, Shown, table_of
 from frbcli.errors import did_you_mean, input_error

@@ -13,15 +13,22 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import SETTING, Terminal, output_options
-from frbcli.cli.files import INPUT, OUTPUT, PAGE_FILE, check_outputs, force_option, forced, here, next_to
 from frbcli.cli.options import (
+    INPUT,
+    OUTPUT,
+    PAGE_FILE,
     TIME_OPTION,
     Command,
     Numbers,
     Span,
+    check_outputs,
     film_option,
+    force_option,
+    forced,
     gathered,
+    here,
     look_options,
+    next_to,
     over_option,
     signal_option,
     speeds_option,

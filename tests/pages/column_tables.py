@@ -54,10 +54,10 @@ from frbcli.linear.critical_map import CRITICAL_SPEEDS
 from frbcli.linear.damped_modes import API_POINTS, ISO_POINTS, MARGINS
 from frbcli.results.columns import EVENTS, MACHINE_SIGNALS, PART_SIGNALS
 from frbcli.scene.machine.findings import FILM_LOADS, FILM_OPERATION, FILM_TILTS
+from frbcli.studies.accuracy import LADDER_COLUMNS
 from frbcli.studies.against import DEVIATIONS, RIDGES
 from frbcli.studies.compare import HEAT, VARIANT
 from frbcli.studies.fit import FITTED
-from frbcli.studies.ladder import LADDER_COLUMNS
 from frbcli.studies.sweep import point_columns
 
 

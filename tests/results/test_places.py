@@ -22,9 +22,9 @@ from synthetic_run import Rotor, parser_error, signals
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.reading.shipped import find_shipped
-from frbcli.cli.files import here
 from frbcli.cli.main import COMMANDS
 from frbcli.cli.main import run as frb
+from frbcli.cli.options import here
 from frbcli.errors import InputError
 from frbcli.plot.moving import animate_orbits
 from frbcli.results.container import locked

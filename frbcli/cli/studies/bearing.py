@@ -14,14 +14,16 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.files import CASE_FILE, forced, here
 from frbcli.cli.options import (
+    CASE_FILE,
     LENGTH_OPTION,
     LOAD_OPTION,
     REST_OPTION,
     Command,
     cavitation_option,
     film_option,
+    forced,
+    here,
     speeds_option,
 )
 from frbcli.cli.progress import OutputOptions, computing, display, outputs_options

@@ -9,13 +9,16 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Terminal, case_argument, case_or_run_argument, output_options
-from frbcli.cli.files import INPUT, OUTPUT_FOLDER, here, next_to
 from frbcli.cli.options import (
+    INPUT,
+    OUTPUT_FOLDER,
     TIME_OPTION,
     Command,
     cavitation_option,
     coupling_option,
     gathered,
+    here,
+    next_to,
     signal_option,
     theory_option,
     thermal_option,
@@ -29,9 +32,9 @@ from frbcli.errors import INTERRUPTED, input_error
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
     from frbcli.case.schema import Case
+    from frbcli.studies.accuracy import AccuracyLadder, RungResult
     from frbcli.studies.against import AgainstMeasured
     from frbcli.studies.compare import Comparison
-    from frbcli.studies.ladder import AccuracyLadder, RungResult
 
 
 KINDS = ("critical-speed", "self-excited", "onset", "offset", "lock-in")
@@ -220,7 +223,7 @@ def accuracy_ladder(
 
 
 def _ladder_document(ladder: AccuracyLadder) -> dict[str, Any]:
-    from frbcli.studies.ladder import RESULT, RUNG
+    from frbcli.studies.accuracy import RESULT, RUNG
 
     (coarser,), (reference,) = documents(RUNG, [ladder.coarser]), documents(RESULT, [ladder.reference])
     reference |= _stated(ladder.reference) | {"compared_with": coarser, "change": reference.pop("error")}

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.files import CASE_FILE, INPUT, check_outputs, force_option, forced, here
 from frbcli.cli.options import (
+    CASE_FILE,
+    INPUT,
     KEY_RANGE,
     LENGTH_OPTION,
     SPEED_OPTION,
@@ -22,6 +23,10 @@ from frbcli.cli.options import (
     Names,
     UnitOption,
     WrittenOption,
+    check_outputs,
+    force_option,
+    forced,
+    here,
     signal_option,
     speeds_option,
 )

@@ -11,8 +11,7 @@ import click
 
 from frbcli.arrays import Array
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.files import INPUT, here
-from frbcli.cli.options import OPERATING_OPTION, Command, GradeOption, speeds_option
+from frbcli.cli.options import INPUT, OPERATING_OPTION, Command, GradeOption, here, speeds_option
 from frbcli.cli.progress import OutputOptions, computing, outputs_options, picture_of
 from frbcli.cli.studies.static_tables import (
     machine_document,

@@ -11,8 +11,19 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Terminal, output_options
-from frbcli.cli.files import INPUT, OUTPUT_FOLDER, check_outputs, force_option, forced, here
-from frbcli.cli.options import SPEED_OPTION, Command, complete_case, gathered, look_options
+from frbcli.cli.options import (
+    INPUT,
+    OUTPUT_FOLDER,
+    SPEED_OPTION,
+    Command,
+    check_outputs,
+    complete_case,
+    force_option,
+    forced,
+    gathered,
+    here,
+    look_options,
+)
 from frbcli.cli.progress import Display, display, draw, picture_switch
 from frbcli.cli.transient import ENDED_EARLY, EXIT_CODES
 from frbcli.errors import input_error
@@ -248,7 +259,7 @@ def _report(swept: Sweep, terminal: Terminal) -> None:
 
 
 def _picture(swept: Sweep, target: Path, terminal: Terminal) -> Path | None:
-    from frbcli.plot.sweep import can_draw, sweep_figure
+    from frbcli.plot.studies import can_draw, sweep_figure
 
     if not can_draw(swept):
         terminal.remark("No picture: it needs one or two keys with several values, and a point with a whirl.")
@@ -284,7 +295,7 @@ def of_machines(
         terminal.result(f"{seen.left_out} machines without a known result are left out.")
     drawn = None
     if target is not None:
-        from frbcli.plot.sweep import scatter_figure
+        from frbcli.plot.studies import scatter_figure
 
         drawn = draw(terminal, lambda: scatter_figure(swept.case.heading, seen), target)
     percentiles = [{"percent": percent, "speed_Hz": speed} for percent, speed in seen.percentiles]
