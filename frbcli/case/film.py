@@ -10,12 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import cache
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag, create_model
 from pydantic.fields import FieldInfo
 
 from frbcli.case.model import (
+    LONGEST,
     PLAIN,
     Angle,
     BoundaryFriction,
@@ -166,12 +167,20 @@ class SealedEnds(Model):
     sealed: Fraction = Field(
         description="share of the open side flow that leaves: 1 open, 0 tight"
     )
+    bath_level: ClassVar[float] = -LONGEST  # air
 
 
 class PartBath(Model):
     """Ends in oil up to a level, in air above."""
 
     bath_level: Position = Field(description="height y of the oil over the middle of the shell")
+    sealed: ClassVar[float] = 1.0
+
+
+ENDS_BY_NAME: dict[str, SealedEnds | PartBath] = {
+    "free-to-air": SealedEnds(sealed=1.0),
+    "oil-bath": PartBath(bath_level=LONGEST),
+}
 
 
 AnyEnds = Annotated[
@@ -211,21 +220,21 @@ class FilmGeometry(Model):
     @property
     def ends(self) -> Literal["free-to-air", "oil-bath"]:
         """What lies at the ends, beyond seals."""
-        if isinstance(self.given_ends, PartBath):
-            return "free-to-air" if self.given_ends.bath_level < 0.5 * self.diameter else "oil-bath"
-        return "free-to-air" if isinstance(self.given_ends, SealedEnds) else self.given_ends
+        return "free-to-air" if self._ends.bath_level < 0.5 * self.diameter else "oil-bath"
+
+    @property
+    def _ends(self) -> SealedEnds | PartBath:
+        return ENDS_BY_NAME[self.given_ends] if isinstance(self.given_ends, str) else self.given_ends
 
     @property
     def bath(self) -> float:
         """Height of the oil at free ends over the middle of the shell, over its radius, -1 without any."""
-        if self.ends == "oil-bath" or not isinstance(self.given_ends, PartBath):
-            return NO_BATH
-        return max(self.given_ends.bath_level / (0.5 * self.diameter), NO_BATH)
+        return NO_BATH if self.ends == "oil-bath" else max(self._ends.bath_level / (0.5 * self.diameter), NO_BATH)
 
     @property
     def sealed(self) -> float:
         """Share of the flow of an open end that the ends let out, 1 without seals."""
-        return self.given_ends.sealed if isinstance(self.given_ends, SealedEnds) else 1.0
+        return self._ends.sealed
 
     @property
     def sealing(self) -> tuple[str, str] | None:

@@ -11,7 +11,15 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Self, TypeVar, get_args
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaHandler, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    model_validator,
+)
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
@@ -94,6 +102,15 @@ class AlsoAs:
 
 
 ONE_OR_MANY = AlsoAs(lambda many: [many["items"], many])  # [bearing] or [[bearing]]
+
+
+def repeated(count: int) -> BeforeValidator:
+    """One table or quantity, used so many times instead of a list."""
+
+    def listed(given: object) -> object:
+        return [given] * count if isinstance(given, dict | Model | str | int | float) else given
+
+    return BeforeValidator(listed)
 
 
 def altered(record: Record, values: Mapping[str, Any]) -> Record:

@@ -15,7 +15,7 @@ from pydantic import Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema
 
 from frbcli.case.model import LABEL_LENGTH, Label, Model, Quantity, Reader
-from frbcli.case.reading.tables import Breach, Path
+from frbcli.case.reading.tables import Breach, Path, pairs
 from frbcli.errors import did_you_mean
 from frbcli.units import NUMBER, ValueFault, quantity
 
@@ -103,9 +103,9 @@ class Input(Reader):
             return self._checked(str(given.get("source", "")), *(_numbers(given[key]) for key in ("time", "x")))
         if not isinstance(given, list | tuple):
             return self.quantity.read(given)
-        if any(not isinstance(each, list | tuple) or len(each) != 2 for each in given):
+        if (columns := pairs(given)) is None:
             raise ValueFault("is no list of times with values.", self.remedy)
-        return self._checked("", [quantity(time, "s") for time, _ in given], [self._one(value) for _, value in given])
+        return self._checked("", [quantity(time, "s") for time in columns[0]], [*map(self._one, columns[1])])
 
     def _one(self, given: object) -> float:
         try:

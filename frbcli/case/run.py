@@ -40,7 +40,7 @@ from frbcli.case.model import (
 )
 from frbcli.case.over_time import Entry, MachineTable, over_time_problem
 from frbcli.case.reading.settings import TomlFault, parse
-from frbcli.case.reading.tables import Breach, Path
+from frbcli.case.reading.tables import Breach, Path, pairs, table
 from frbcli.units import NUMBER, SPEED, SpeedUnit, ValueFault, display, is_per_minute, quantity
 
 if TYPE_CHECKING:
@@ -89,9 +89,7 @@ def given_speed_unit(text: str) -> SpeedUnit:
         tables = parse(text)
     except TomlFault:
         return SpeedUnit()
-    motion = tables.get("motion")
-    of_motion = motion.get("speed") if isinstance(motion, Mapping) else None
-    return SpeedUnit(_any_per_minute([tables.get("speed"), tables.get("drive"), of_motion]))
+    return SpeedUnit(_any_per_minute([tables.get("speed"), tables.get("drive"), table(tables, "motion").get("speed")]))
 
 
 def speed_unit_of(run: Run) -> SpeedUnit:
@@ -249,8 +247,8 @@ class _Points(Reader):
             return given
         if isinstance(given, dict) and given.keys() == TorquePoints.model_fields.keys():
             over, places, torques = given["over"], given["at"], given["torque"]
-        elif isinstance(given, list | tuple) and all(isinstance(row, list | tuple) and len(row) == 2 for row in given):
-            places, torques = [row[0] for row in given], [row[1] for row in given]
+        elif (columns := pairs(given)) is not None:
+            places, torques = columns
             over = "time" if self._are(places, "s") else "speed"
         else:
             raise ValueFault("is no list of speeds or times with torques.", self.remedy)

@@ -187,6 +187,14 @@ def listed(data: Mapping[str, Any], key: str) -> list[Any]:
     return list(entry) if isinstance(entry, list | tuple) else []
 
 
+def pairs(given: object) -> tuple[list[Any], list[Any]] | None:
+    """The two columns of a list of pairs, None of anything else."""
+    rows: Any = given if isinstance(given, list | tuple) else [given]
+    if any(not isinstance(row, list | tuple) or len(row) != 2 for row in rows):
+        return None
+    return [row[0] for row in rows], [row[1] for row in rows]
+
+
 def tables(data: Mapping[str, Any], key: str) -> list[tuple[Path, dict[str, Any]]]:
     """The tables of [key] or [[key]] with their paths."""
     if has_table(data, key):

@@ -16,7 +16,7 @@ from frbcli.arrays import Array
 from frbcli.case.model import SMALLEST, Model, unit_of
 from frbcli.case.over_time import OverTime
 from frbcli.case.reading.files import Refused, with_file
-from frbcli.case.reading.tables import Breach, table, tables
+from frbcli.case.reading.tables import Breach, pairs, table, tables
 from frbcli.case.reading.tables import Path as Key
 from frbcli.errors import InputError
 from frbcli.units import SPEED, ValueFault, quantity
@@ -291,8 +291,8 @@ def with_speed_points(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any
 
     folder: that a relative path counts from.
     """
-    speed = data.get("speed")
-    if not isinstance(speed, dict) or not {"points", "file", GIVEN_TIMES, SPEEDS} & speed.keys():
+    speed = table(data, "speed")
+    if not {"points", "file", GIVEN_TIMES, SPEEDS} & speed.keys():
         return data, []
     given = [key for key in ("points", "file", GIVEN_TIMES) if key in speed]
     if len(given) > 1:
@@ -330,10 +330,10 @@ def _written(speed: dict[str, Any], folder: Path) -> tuple[Any, Any]:
         return columns["time"], columns["x"]
     if GIVEN_TIMES in speed or SPEEDS in speed:
         return speed.get(GIVEN_TIMES), speed.get(SPEEDS)
-    points = speed.get("points")
-    if not isinstance(points, list) or any(not isinstance(each, list) or len(each) != 2 for each in points):
+    points = pairs(speed.get("points"))
+    if points is None:
         raise Refused("is no list of times with speeds, nor the name of a file.", REMEDY)
-    return [time for time, _ in points], [value for _, value in points]
+    return points
 
 
 def _column(given: object, unit: str) -> list[float]:
