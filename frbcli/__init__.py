@@ -65,7 +65,7 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.studies.against import against_measured as against_measured
     from frbcli.studies.compare import compare as compare
     from frbcli.studies.fit import fit as fit
-    from frbcli.studies.sweep.sweep import sweep as sweep
+    from frbcli.studies.sweep import sweep as sweep
     from frbcli.studies.warm_up import warm_up as warm_up
 
 
@@ -129,7 +129,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "stability_map": "frbcli.cycles.stability_map",
     "squeeze": "frbcli.bearing_tests.kinematic",
     "stability": "frbcli.linear.stability",
-    "sweep": "frbcli.studies.sweep.sweep",
+    "sweep": "frbcli.studies.sweep",
     "thrust_sheet": "frbcli.linear.sheets.thrust",
     "vibration_limits": "frbcli.linear.damped_modes",
     "warm_up": "frbcli.studies.warm_up",

@@ -5,11 +5,14 @@ Whatever frb raises on purpose derives from FrbError; anything else is a bug.
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import SequenceMatcher
 
 INTERRUPTED = 130  # exit code: 128 + SIGINT
+# Those that ask a process to end, so that it can keep what it has. Windows does not have the last one.
+SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
 
 
 def printable(text: str) -> str:

@@ -163,18 +163,18 @@ def quantity(given: object, unit: str, example: str = "") -> float:
 
 def is_kinematic(given: object) -> bool:
     """Whether `given` is text of a kinematic viscosity, such as "12 cSt"."""
-    parts = _TEXT.fullmatch(_without_groups(given)) if isinstance(given, str) else None
-    if parts is None:
-        return False
-    return _spelled(parts[2]) in _COMMON[KINEMATIC]
+    return _unit_of(given) in _COMMON[KINEMATIC]
 
 
 def is_per_minute(given: object) -> bool:
     """Whether `given` is text of a speed in revolutions per minute, such as "9000 rpm"."""
+    return _unit_of(given) in (*_PER_MINUTE, "krpm")
+
+
+def _unit_of(given: object) -> str:
+    """The unit of a quantity, "" of anything else."""
     parts = _TEXT.fullmatch(_without_groups(given)) if isinstance(given, str) else None
-    if parts is None:
-        return False
-    return _spelled(parts[2]) in (*_PER_MINUTE, "krpm")
+    return "" if parts is None else _spelled(parts[2])
 
 
 def display(value: float, unit: str) -> str:

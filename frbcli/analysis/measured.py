@@ -23,8 +23,8 @@ from frbcli.analysis.order_tracking import MARK, Tacho, tacho_speed
 from frbcli.analysis.signals import even_steps, point_of, require_rising, sampled_at
 from frbcli.arrays import Array
 from frbcli.errors import did_you_mean
-from frbcli.results.measured.columns import Columns, is_interval, wrong_file
-from frbcli.results.measured.reading import read_columns
+from frbcli.results.measured import read_columns
+from frbcli.results.measured_columns import Columns, is_interval, wrong_file
 from frbcli.results.records import LARGEST, SMALLEST, Signal, wrong_values
 from frbcli.results.store import Run
 from frbcli.units import SPEED, ValueFault, display, quantity

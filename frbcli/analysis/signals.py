@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from frbcli.arrays import Array, Complex
 from frbcli.errors import did_you_mean, input_error
-from frbcli.results.measured.columns import Columns, wrong_file
+from frbcli.results.measured_columns import Columns, wrong_file
 from frbcli.results.records import TIME
 from frbcli.results.store import CRITICAL_SPEED, CRITICAL_SPEEDS
 

@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field
 
-from frbcli.case.elements import WITHOUT_FILM, BallBearingKeys, CoefficientsBearing, Element
+from frbcli.case.elements import WITHOUT_FILM, BallBearingKeys, CoefficientsBearing
 from frbcli.case.film import FilmGeometry, RingFilm
 from frbcli.case.model import (
     ONE_OR_MANY,
@@ -28,6 +28,7 @@ from frbcli.case.model import (
     ThermalConductivity,
     Tilt,
     altered,
+    repeated,
 )
 from frbcli.case.oil import AnyWall, Material
 from frbcli.case.over_time import InputTemperature
@@ -208,14 +209,7 @@ class FloatingRingBearing(BearingWalls):
         return max(self.inner.width, self.outer.width) if self.ring.width is None else self.ring.width
 
 
-def _both_sides(given: object) -> object:
-    """One film, used for both ends of a cartridge."""
-    return [given, given] if isinstance(given, dict | Model) else given
-
-
-_Films = Annotated[
-    tuple[RingFilm, RingFilm], BeforeValidator(_both_sides), AlsoAs(lambda both: [both["prefixItems"][0], both])
-]
+_Films = Annotated[tuple[RingFilm, RingFilm], repeated(2), AlsoAs(lambda both: [both["prefixItems"][0], both])]
 SIDES = ("left", "right")  # of a cartridge; left is towards smaller positions
 
 
@@ -279,37 +273,27 @@ GivenBearing = SingleFilmBearing | FloatingRingBearing | CartridgeBearing | Coef
 Bearing = Annotated[GivenBearing, Field(discriminator="kind")]
 
 
-def _as_list(given: object) -> object:
-    """One table as a list of one; several without names are numbered, for results carry the names."""
-    if isinstance(given, dict | Model):
-        return [given]
-    if isinstance(given, list | tuple) and len(given) > 1:
-        in_film = [bearing for bearing in given if not _without_film(bearing)]
-        # The one film of a symmetric rotor keeps the plain names of its signals next to elements.
-        plain = in_film if len(in_film) == 1 and _position(in_film[0]) is None else []
-        return [
-            bearing if any(bearing is one for one in plain) else _named(bearing, str(number))
-            for number, bearing in enumerate(given, start=1)
-        ]
-    return given
+def _numbered(given: object) -> object:
+    """Several bearings without names are numbered, for results carry the names."""
+    if not isinstance(given, list | tuple) or len(given) < 2:
+        return given
+    in_film = [bearing for bearing in given if _key(bearing, "kind") not in WITHOUT_FILM]
+    # The one film of a symmetric rotor keeps the plain names of its signals next to elements.
+    plain = in_film if len(in_film) == 1 and _key(in_film[0], "position") is None else []
+    return [
+        bearing if any(bearing is one for one in plain) else _named(bearing, str(number))
+        for number, bearing in enumerate(given, start=1)
+    ]
 
 
-def _position(bearing: object) -> object:
-    return bearing.get("position") if isinstance(bearing, dict) else getattr(bearing, "position", None)
-
-
-def _without_film(bearing: object) -> bool:
-    if isinstance(bearing, dict):
-        return bearing.get("kind") in WITHOUT_FILM
-    return isinstance(bearing, Element)
+def _key(bearing: object, key: str) -> object:
+    return bearing.get(key) if isinstance(bearing, dict) else getattr(bearing, key, None)
 
 
 def _named(bearing: object, name: str) -> object:
     if isinstance(bearing, dict):
         return {"name": name, **bearing}
-    if isinstance(bearing, GivenBearing) and not bearing.name:
-        return altered(bearing, {"name": name})
-    return bearing
+    return altered(bearing, {"name": name}) if isinstance(bearing, Model) and not _key(bearing, "name") else bearing
 
 
-Bearings = Annotated[tuple[Bearing, ...], BeforeValidator(_as_list), ONE_OR_MANY]
+Bearings = Annotated[tuple[Bearing, ...], BeforeValidator(_numbered), repeated(1), ONE_OR_MANY]

@@ -12,6 +12,7 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from frbcli.case.film import FilmGeometry
 from frbcli.case.model import (
+    PLAIN,
     AlsoAs,
     Clearance,
     ContactAngle,
@@ -35,6 +36,7 @@ from frbcli.case.model import (
     Quantity,
     SignedSpeed,
     TopSpeed,
+    form_of,
 )
 from frbcli.case.over_time import Input, OverTime, is_over_time
 from frbcli.case.surroundings import Damper, Support
@@ -164,21 +166,14 @@ class AxialOffset(Model):
     offset: Play = Field(description="axial displacement of each inner ring from first contact")
 
 
-def _material_form(given: object) -> str:
-    return "(figures)" if isinstance(given, dict | RollingMaterial) else "(name)"
-
-
-def _preload_form(given: object) -> str:
-    return "(offset)" if isinstance(given, dict | AxialOffset) else "(force)"
-
-
 _RollingName: Any = Literal[tuple(ROLLING)]
 AnyRollingMaterial = Annotated[
-    Annotated[_RollingName, Tag("(name)")] | Annotated[RollingMaterial, Tag("(figures)")],
-    Discriminator(_material_form),
+    Annotated[_RollingName, Tag(PLAIN)] | Annotated[RollingMaterial, Tag("(RollingMaterial)")],
+    Discriminator(lambda given: form_of(given, RollingMaterial)),
 ]
 AnyPreload = Annotated[
-    Annotated[PreloadForce, Tag("(force)")] | Annotated[AxialOffset, Tag("(offset)")], Discriminator(_preload_form)
+    Annotated[PreloadForce, Tag(PLAIN)] | Annotated[AxialOffset, Tag("(AxialOffset)")],
+    Discriminator(lambda given: form_of(given, AxialOffset)),
 ]
 
 
@@ -279,14 +274,9 @@ class LoadAtSpeed(Model):
         return self.load * (speed / self.at) ** 2
 
 
-def _load_form(given: object) -> str:
-    squared = isinstance(given, LoadAtSpeed) or (isinstance(given, dict) and not is_over_time(given))
-    return "(squared)" if squared else "(load)"
-
-
 AnyLoad = Annotated[
-    Annotated[float | OverTime, AXIAL, Input(AXIAL), Tag("(load)")] | Annotated[LoadAtSpeed, Tag("(squared)")],
-    Discriminator(_load_form),
+    Annotated[float | OverTime, AXIAL, Input(AXIAL), Tag(PLAIN)] | Annotated[LoadAtSpeed, Tag("(LoadAtSpeed)")],
+    Discriminator(lambda given: PLAIN if is_over_time(given) else form_of(given, LoadAtSpeed)),
 ]
 
 

@@ -10,12 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from functools import cache
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Discriminator, Field, Tag, create_model
 from pydantic.fields import FieldInfo
 
 from frbcli.case.model import (
+    LONGEST,
+    PLAIN,
     Angle,
     BoundaryFriction,
     Clearance,
@@ -37,6 +39,7 @@ from frbcli.case.model import (
     Temperature,
     Viscosity,
     WearCoefficient,
+    form_of,
 )
 from frbcli.case.oil import ROOM_TEMPERATURE
 from frbcli.case.supplies import NoSupply, Supply
@@ -136,8 +139,8 @@ class ClearanceStep(Model):
 
 
 AnyClearance = Annotated[
-    Annotated[Clearance, Tag("(warm)")] | Annotated[ColdClearance, Tag("(cold)")],
-    Discriminator(lambda given: "(cold)" if isinstance(given, dict | ColdClearance) else "(warm)"),
+    Annotated[Clearance, Tag(PLAIN)] | Annotated[ColdClearance, Tag("(ColdClearance)")],
+    Discriminator(lambda given: form_of(given, ColdClearance)),
 ]
 
 
@@ -164,25 +167,27 @@ class SealedEnds(Model):
     sealed: Fraction = Field(
         description="share of the open side flow that leaves: 1 open, 0 tight"
     )
+    bath_level: ClassVar[float] = -LONGEST  # air
 
 
 class PartBath(Model):
     """Ends in oil up to a level, in air above."""
 
     bath_level: Position = Field(description="height y of the oil over the middle of the shell")
+    sealed: ClassVar[float] = 1.0
 
 
-def _ends_form(given: object) -> str:
-    if isinstance(given, PartBath) or (isinstance(given, dict) and "bath_level" in given):
-        return "(bath)"
-    return "(sealed)" if isinstance(given, dict | SealedEnds) else "(open)"
+ENDS_BY_NAME: dict[str, SealedEnds | PartBath] = {
+    "free-to-air": SealedEnds(sealed=1.0),
+    "oil-bath": PartBath(bath_level=LONGEST),
+}
 
 
 AnyEnds = Annotated[
-    Annotated[Literal["free-to-air", "oil-bath"], Tag("(open)")]
-    | Annotated[SealedEnds, Tag("(sealed)")]
-    | Annotated[PartBath, Tag("(bath)")],
-    Discriminator(_ends_form),
+    Annotated[Literal["free-to-air", "oil-bath"], Tag(PLAIN)]
+    | Annotated[SealedEnds, Tag("(SealedEnds)")]
+    | Annotated[PartBath, Tag("(PartBath)")],
+    Discriminator(lambda given: form_of(given, PartBath, SealedEnds)),
 ]
 
 
@@ -215,21 +220,21 @@ class FilmGeometry(Model):
     @property
     def ends(self) -> Literal["free-to-air", "oil-bath"]:
         """What lies at the ends, beyond seals."""
-        if isinstance(self.given_ends, PartBath):
-            return "free-to-air" if self.given_ends.bath_level < 0.5 * self.diameter else "oil-bath"
-        return "free-to-air" if isinstance(self.given_ends, SealedEnds) else self.given_ends
+        return "free-to-air" if self._ends.bath_level < 0.5 * self.diameter else "oil-bath"
+
+    @property
+    def _ends(self) -> SealedEnds | PartBath:
+        return ENDS_BY_NAME[self.given_ends] if isinstance(self.given_ends, str) else self.given_ends
 
     @property
     def bath(self) -> float:
         """Height of the oil at free ends over the middle of the shell, over its radius, -1 without any."""
-        if self.ends == "oil-bath" or not isinstance(self.given_ends, PartBath):
-            return NO_BATH
-        return max(self.given_ends.bath_level / (0.5 * self.diameter), NO_BATH)
+        return NO_BATH if self.ends == "oil-bath" else max(self._ends.bath_level / (0.5 * self.diameter), NO_BATH)
 
     @property
     def sealed(self) -> float:
         """Share of the flow of an open end that the ends let out, 1 without seals."""
-        return self.given_ends.sealed if isinstance(self.given_ends, SealedEnds) else 1.0
+        return self._ends.sealed
 
     @property
     def sealing(self) -> tuple[str, str] | None:

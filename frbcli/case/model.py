@@ -6,11 +6,20 @@ Each kind reads what the user wrote and holds SI. A value that does not fit rais
 from __future__ import annotations
 
 import re
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Self, TypeVar, get_args
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    model_validator,
+)
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema, core_schema
 
@@ -41,6 +50,16 @@ class Model(BaseModel):
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=False, validate_default=False)
+
+    @classmethod
+    def completed(cls, table: dict[str, Any]) -> dict[str, Any]:
+        """What a user wrote, with the keys that follow from others."""
+        return table
+
+    @model_validator(mode="before")
+    @classmethod
+    def _complete(cls, data: object) -> object:
+        return cls.completed(data) if isinstance(data, dict) else data
 
     def __setattr__(self, name: str, value: Any) -> None:
         """Raises FrozenError for every public name."""
@@ -85,6 +104,15 @@ class AlsoAs:
 ONE_OR_MANY = AlsoAs(lambda many: [many["items"], many])  # [bearing] or [[bearing]]
 
 
+def repeated(count: int) -> BeforeValidator:
+    """One table or quantity, used so many times instead of a list."""
+
+    def listed(given: object) -> object:
+        return [given] * count if isinstance(given, dict | Model | str | int | float) else given
+
+    return BeforeValidator(listed)
+
+
 def altered(record: Record, values: Mapping[str, Any]) -> Record:
     """`record` with values that the program has computed, in SI, by their attributes. They are not checked; values of a
     user are set by `Case.with_settings`. Raises KeyError for an attribute that is no field."""
@@ -93,11 +121,20 @@ def altered(record: Record, values: Mapping[str, Any]) -> Record:
     return BaseModel.model_copy(record, update=values)
 
 
-def with_default(data: object, key: str, source: str) -> object:
-    """`data` with `key` taken from its key `source` if it has that one only; anything but a table as it is."""
-    if isinstance(data, dict) and key not in data and source in data:
-        return {**data, key: data[source]}
-    return data
+def with_default(table: dict[str, Any], key: str, source: str) -> dict[str, Any]:
+    """A table with `key` taken from its key `source` if it has that one only."""
+    return {**table, key: table[source]} if key not in table and source in table else table
+
+
+PLAIN = "(plain)"
+
+
+def form_of(given: object, *tables: type[Model]) -> str:
+    """The tag of the form in which a value is written: PLAIN, or the name of one of the tables in brackets, of the
+    first one that has a key of what is written, else of the last."""
+    if isinstance(given, dict):
+        return f"({next((each for each in tables if given.keys() & each.model_fields.keys()), tables[-1]).__name__})"
+    return f"({type(given).__name__})" if type(given) in tables else PLAIN
 
 
 def _frozen(model: Model | type[Model], *names: str) -> FrozenError:
@@ -115,12 +152,19 @@ LARGEST = 1e15
 SMALLEST = 1e-15
 
 
-def _reader(read: Callable[[object], Any]) -> CoreSchema:
-    return core_schema.no_info_plain_validator_function(read)
+class Reader(ABC):
+    """Reads a value of a model as a user writes it, and holds SI."""
+
+    @abstractmethod
+    def read(self, given: object) -> Any:
+        """The value. Raises ValueFault."""
+
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.read)
 
 
 @dataclass(frozen=True)
-class Quantity:
+class Quantity(Reader):
     """A float in SI. unit: as in `frbcli.units.quantity`; above, below: exclusive; least, most: inclusive bounds."""
 
     unit: str
@@ -161,9 +205,6 @@ class Quantity:
         """The example as written in a case file."""
         return self.example if self.unit == NUMBER else f'"{self.example}"'
 
-    def __get_pydantic_core_schema__(self, _source: Any, _handler: GetCoreSchemaHandler) -> CoreSchema:
-        return _reader(self.read)
-
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
         bare = self.unit == NUMBER
         unit = "K" if self.unit == TEMPERATURE_DIFFERENCE else self.unit
@@ -194,7 +235,7 @@ def _annotated(annotation: Any) -> Iterator[Any]:
 
 
 @dataclass(frozen=True)
-class Count:
+class Count(Reader):
     """A whole number from `least` to `most`."""
 
     least: int
@@ -210,9 +251,6 @@ class Count:
     def written_example(self) -> str:
         """A value as written in a case file."""
         return str(self.example)
-
-    def __get_pydantic_core_schema__(self, _source: Any, _handler: GetCoreSchemaHandler) -> CoreSchema:
-        return _reader(self.read)
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
         return {"type": "integer", "minimum": self.least, "maximum": self.most, "examples": [self.example]}

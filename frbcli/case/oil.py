@@ -11,9 +11,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from frbcli.case.model import (
+    PLAIN,
     Conductance,
     HeatCapacity,
     KinematicViscosity,
@@ -26,13 +27,14 @@ from frbcli.case.model import (
     ThermalConductivity,
     Viscosity,
     VogelOffset,
+    form_of,
     with_default,
 )
 from frbcli.case.over_time import InputTemperature, is_over_time
+from frbcli.case.reading.tables import number
 from frbcli.materials import (
     OILS,
     SOLIDS,
-    OilGrade,
     VogelLaw,
     conductivity,
     density,
@@ -58,13 +60,17 @@ def _plain(name: str) -> str:
 SPELLED = {_plain(name): name for name in OILS}
 
 
+def _grade_in(oil: Mapping[str, Any]) -> str:
+    """The grade of the viscosity, by itself or in a table, as it is written; other text where there is none."""
+    given = oil.get("viscosity", "")
+    return str(given.get("grade", "") if isinstance(given, dict) else getattr(given, "grade", given))
+
+
 def with_grade(oil: Mapping[str, Any]) -> dict[str, Any]:
-    """The table [oil] with the grade of its viscosity, by itself or in a table, by the name that the library has."""
-    given = oil.get("viscosity")
-    name = given.get("grade") if isinstance(given, dict) else given
-    if not isinstance(name, str) or not _plain(name).startswith(("VG", "SAE")):
-        return dict(oil)
-    return {**oil, "viscosity": {"grade": SPELLED.get(_plain(name), name)}}
+    """The table [oil] with the grade of its viscosity in a table, by the name that the library has."""
+    name = _grade_in(oil)
+    is_grade = _plain(name).startswith(("VG", "SAE"))
+    return {**oil, "viscosity": {"grade": SPELLED.get(_plain(name), name)}} if is_grade else dict(oil)
 
 
 @dataclass(frozen=True)
@@ -88,8 +94,7 @@ class Vogel(Model):
     A: TemperatureDifference = Field(description="of (3.12)")
     C: VogelOffset = Field(description="about -180 K; for a fit in Celsius, its C less 273.15 K")
 
-    @property
-    def law(self) -> VogelLaw:
+    def law(self, _: float = USUAL_DENSITY) -> VogelLaw:
         """The viscosity over the temperature in K, Pa s."""
         return VogelLaw(self.eta_0, self.A, self.C)
 
@@ -98,6 +103,10 @@ class Grade(Model):
     """An oil of the library."""
 
     grade: GradeName = Field(description="SAE or ISO VG, see [heat](heat.md#oils-and-materials)")
+
+    def law(self, _: float = USUAL_DENSITY) -> VogelLaw:
+        """Vogel's law of the library."""
+        return OILS[self.grade].law
 
 
 class ViscosityPoints(Model):
@@ -116,19 +125,11 @@ class ViscosityPoints(Model):
         return through_three([t for t, _ in known], [nu * density(density_15, t) for t, nu in known])
 
 
-def _kind_of_viscosity(given: object) -> str:
-    if isinstance(given, dict):
-        return "(points)" if "points" in given else "(grade)"
-    if isinstance(given, ViscosityPoints):
-        return "(points)"
-    return "(grade)" if isinstance(given, Grade) else "(viscosity)"
-
-
 AnyViscosity = Annotated[
-    Annotated[Viscosity, Tag("(viscosity)")]
-    | Annotated[Grade, Tag("(grade)")]
-    | Annotated[ViscosityPoints, Tag("(points)")],
-    Discriminator(_kind_of_viscosity),
+    Annotated[Viscosity, Tag(PLAIN)]
+    | Annotated[Grade, Tag("(Grade)")]
+    | Annotated[ViscosityPoints, Tag("(ViscosityPoints)")],
+    Discriminator(lambda given: form_of(given, ViscosityPoints, Grade)),
 ]
 
 
@@ -160,58 +161,36 @@ class Oil(Model):
     ambient_pressure: ReferencePressure = Field(default=ATMOSPHERE, description="at the ends of the bearings, absolute")
     cavitation_pressure: ReferencePressure = Field(default=ATMOSPHERE, description="default: the ambient pressure")
 
-    @model_validator(mode="before")
     @classmethod
-    def _cavitates_at_ambient_pressure(cls, data: object) -> object:
-        return with_default(data, "cavitation_pressure", "ambient_pressure")
-
-    @model_validator(mode="before")
-    @classmethod
-    def _density_of_its_grade(cls, data: object) -> object:
-        """`data` with the density of its grade, where it gives none."""
-        if not isinstance(data, dict):
-            return data
-        data = with_grade(data)
-        given = data.get("viscosity")
-        name = given.get("grade") if isinstance(given, dict) else getattr(given, "grade", None)
-        if "density" in data or not isinstance(name, str) or name not in OILS:
-            return data
-        return {**data, "density": density(OILS[name].density_15, _readable(data.get("temperature")))}
-
-    @model_validator(mode="before")
-    @classmethod
-    def _dynamic(cls, data: object) -> object:
-        """`data` with the dynamic viscosity, where it gives a kinematic one and a density that can be read."""
-        if not isinstance(data, dict) or "density" not in data or not is_kinematic(data.get("viscosity")):
-            return data
-        try:
-            rho = quantity(data["density"], "kg/m^3")
-        except ValueFault:
-            return data
-        return {**data, "viscosity": quantity(data["viscosity"], KINEMATIC) * rho}
-
-    @property
-    def grade(self) -> OilGrade | None:
-        """The oil of the library, None for any other."""
-        return OILS[self.given_viscosity.grade] if isinstance(self.given_viscosity, Grade) else None
+    def completed(cls, table: dict[str, Any]) -> dict[str, Any]:
+        """With the dynamic viscosity where it gives a kinematic one and a density that can be read; with the density of
+        its grade, and with the ambient pressure as that of cavitation, where it gives none."""
+        rho = number(table, "density", "kg/m^3")
+        if rho is not None and is_kinematic(table.get("viscosity")):
+            table = {**table, "viscosity": quantity(table["viscosity"], KINEMATIC) * rho}
+        table = with_grade(table)
+        grade = OILS.get(_grade_in(table))
+        if grade is not None and "density" not in table:
+            temperature = number(table, "temperature", "K", USUAL_TEMPERATURE) or USUAL_TEMPERATURE
+            table["density"] = density(grade.density_15, temperature)
+        return with_default(table, "cavitation_pressure", "ambient_pressure")
 
     @property
     def law(self) -> VogelLaw | None:
         """Viscosity over temperature, with the factor for shear; None for a given viscosity."""
-        given = self.given_viscosity
-        points = given.law(self._density_15) if isinstance(given, ViscosityPoints) else None
-        grade = None if self.grade is None else self.grade.law
-        law = points or grade or (None if self.vogel is None else self.vogel.law)
-        return None if law is None else law.times(self.shear_factor)
+        given = self.vogel if self.given_viscosity is None else self.given_viscosity
+        if given is None or isinstance(given, float):
+            return None
+        return given.law(self._density_15).times(self.shear_factor)
 
     @property
     def viscosity(self) -> float:
         """The dynamic viscosity [Pa s], given or by the law at the temperature."""
-        if self.given_viscosity is not None and not isinstance(self.given_viscosity, Model):
-            return self.given_viscosity
-        if self.law is None or self.temperature is None:  # the checks of a case file do not let this pass
-            return math.nan
-        return self.law.at(self.temperature)
+        law = self.law
+        if law is not None and self.temperature is not None:
+            return law.at(self.temperature)
+        # the checks of a case file let no law without a temperature pass
+        return self.given_viscosity if isinstance(self.given_viscosity, float) else math.nan
 
     def heat_capacity_at(self, temperature: float) -> float:
         """The specific heat capacity [J/(kg K)] at a temperature in K: given, or of a petroleum oil."""
@@ -226,14 +205,6 @@ class Oil(Model):
     def _density_15(self) -> float:
         """The density [kg/m^3] at 15 degC, the given one being that at the temperature of the films."""
         return self.density**2 / density(self.density, self.temperature or USUAL_TEMPERATURE)
-
-
-def _readable(temperature: object) -> float:
-    """A temperature in K where it can be read, else the usual one."""
-    try:
-        return USUAL_TEMPERATURE if temperature is None else quantity(temperature, "K")
-    except ValueFault:
-        return USUAL_TEMPERATURE
 
 
 ROOM_TEMPERATURE = 293.15
@@ -254,15 +225,15 @@ class WallNode(Model):
 
 
 def _wall_form(given: object) -> str:
-    if isinstance(given, dict | WallNode) and not is_over_time(given):
-        return "(node)"
-    return "(adiabatic)" if given == "adiabatic" else "(temperature)"
+    if given == "adiabatic":
+        return "(adiabatic)"
+    return PLAIN if is_over_time(given) else form_of(given, WallNode)
 
 
 AnyWall = Annotated[
     Annotated[Literal["adiabatic"], Tag("(adiabatic)")]
-    | Annotated[InputTemperature, Tag("(temperature)")]
-    | Annotated[WallNode, Tag("(node)")],
+    | Annotated[InputTemperature, Tag(PLAIN)]
+    | Annotated[WallNode, Tag("(WallNode)")],
     Discriminator(_wall_form),
 ]
 

@@ -11,11 +11,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
-from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
-from pydantic_core import CoreSchema, core_schema
+from pydantic import Field, GetJsonSchemaHandler
+from pydantic_core import CoreSchema
 
-from frbcli.case.model import LABEL_LENGTH, Label, Model, Quantity
-from frbcli.case.reading.tables import Breach, Path
+from frbcli.case.model import LABEL_LENGTH, Label, Model, Quantity, Reader
+from frbcli.case.reading.tables import Breach, Path, pairs
 from frbcli.errors import did_you_mean
 from frbcli.units import NUMBER, ValueFault, quantity
 
@@ -82,7 +82,7 @@ def values_of(given: object, unit: str) -> tuple[float, ...]:
 
 
 @dataclass(frozen=True)
-class Input:
+class Input(Reader):
     """An input of a machine: a quantity, or times with quantities, or the numbers of a file as an OverTime."""
 
     quantity: Quantity
@@ -103,9 +103,9 @@ class Input:
             return self._checked(str(given.get("source", "")), *(_numbers(given[key]) for key in ("time", "x")))
         if not isinstance(given, list | tuple):
             return self.quantity.read(given)
-        if any(not isinstance(each, list | tuple) or len(each) != 2 for each in given):
+        if (columns := pairs(given)) is None:
             raise ValueFault("is no list of times with values.", self.remedy)
-        return self._checked("", [quantity(time, "s") for time, _ in given], [self._one(value) for _, value in given])
+        return self._checked("", [quantity(time, "s") for time in columns[0]], [*map(self._one, columns[1])])
 
     def _one(self, given: object) -> float:
         try:
@@ -119,9 +119,6 @@ class Input:
         if not source.isprintable() or len(source) > LABEL_LENGTH:
             raise ValueFault("has a source that is not one line of text.", "Name the file that it was read from.")
         return OverTime(source=source, time=tuple(time), x=tuple(map(self._one, x)))
-
-    def __get_pydantic_core_schema__(self, _source: Any, _handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.read)
 
     def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         one = self.quantity.__get_pydantic_json_schema__(schema, handler)

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, model_validator
-from pydantic_core import CoreSchema, core_schema
+from pydantic import Field, GetJsonSchemaHandler
+from pydantic_core import CoreSchema
 
 from frbcli.case.model import (
     Angle,
@@ -29,6 +29,7 @@ from frbcli.case.model import (
     Model,
     Quantity,
     Rate,
+    Reader,
     SignedSpeed,
     Speed,
     Tilt,
@@ -39,7 +40,7 @@ from frbcli.case.model import (
 )
 from frbcli.case.over_time import Entry, MachineTable, over_time_problem
 from frbcli.case.reading.settings import TomlFault, parse
-from frbcli.case.reading.tables import Breach, Path
+from frbcli.case.reading.tables import Breach, Path, pairs, table
 from frbcli.units import NUMBER, SPEED, SpeedUnit, ValueFault, display, is_per_minute, quantity
 
 if TYPE_CHECKING:
@@ -76,10 +77,9 @@ class SpeedRamp(Model):
         """Times in s of the run-up with speeds in Hz, linear between them."""
         return (self.times, self.speeds) if self.times else ((0.0, self.duration), (self.start, self.end))
 
-    @model_validator(mode="before")
     @classmethod
-    def _down_as_fast_as_up(cls, data: object) -> object:
-        return with_default(data, "down_duration", "duration")
+    def completed(cls, table: dict[str, Any]) -> dict[str, Any]:
+        return with_default(table, "down_duration", "duration")
 
 
 def given_speed_unit(text: str) -> SpeedUnit:
@@ -89,9 +89,7 @@ def given_speed_unit(text: str) -> SpeedUnit:
         tables = parse(text)
     except TomlFault:
         return SpeedUnit()
-    motion = tables.get("motion")
-    of_motion = motion.get("speed") if isinstance(motion, Mapping) else None
-    return SpeedUnit(_any_per_minute([tables.get("speed"), tables.get("drive"), of_motion]))
+    return SpeedUnit(_any_per_minute([tables.get("speed"), tables.get("drive"), table(tables, "motion").get("speed")]))
 
 
 def speed_unit_of(run: Run) -> SpeedUnit:
@@ -238,7 +236,7 @@ class BrakingLoad(Model):
 
 
 @dataclass(frozen=True)
-class _Points:
+class _Points(Reader):
     """Reads a list of speeds or times with torques."""
 
     remedy = 'Write e.g. [["0 Hz", "0.1 N*m"], ["500 Hz", "0 N*m"]], or times instead of the speeds.'
@@ -249,8 +247,8 @@ class _Points:
             return given
         if isinstance(given, dict) and given.keys() == TorquePoints.model_fields.keys():
             over, places, torques = given["over"], given["at"], given["torque"]
-        elif isinstance(given, list | tuple) and all(isinstance(row, list | tuple) and len(row) == 2 for row in given):
-            places, torques = [row[0] for row in given], [row[1] for row in given]
+        elif (columns := pairs(given)) is not None:
+            places, torques = columns
             over = "time" if self._are(places, "s") else "speed"
         else:
             raise ValueFault("is no list of speeds or times with torques.", self.remedy)
@@ -276,9 +274,6 @@ class _Points:
         except ValueFault:
             return False
 
-    def __get_pydantic_core_schema__(self, _source: Any, _handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.read)
-
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
         pair = {"type": "array", "minItems": 2, "maxItems": 2}
         description = "speeds or times with torques"
@@ -287,7 +282,7 @@ class _Points:
 
 
 @dataclass(frozen=True)
-class _Loads:
+class _Loads(Reader):
     """Reads a load: one quantity, whose unit gives the power of the speed, or a table of several."""
 
     remedy = 'Write e.g. "0.01 N*m", "1e-4 N*m*s", "1e-7 N*m*s^2", or { constant = "0.01 N*m", square = ... }.'
@@ -312,9 +307,6 @@ class _Loads:
             return power.read(given)
         except ValueFault as fault:
             raise ValueFault(fault.problem, self.remedy) from None
-
-    def __get_pydantic_core_schema__(self, _source: Any, _handler: GetCoreSchemaHandler) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(self.read)
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         text = {"type": "string", "examples": [power.example for power in POWERS.values()]}
@@ -346,14 +338,13 @@ class Drive(MachineTable):
     )
     reaction: bool = Field(default=False, description="unbalance whirl acts on the rotation")
 
-    @model_validator(mode="before")
     @classmethod
-    def _completed(cls, data: object) -> object:
+    def completed(cls, table: dict[str, Any]) -> dict[str, Any]:
         """A run-down as long as the run-up, and a torque as a list as points."""
-        data = with_default(data, "down_duration", "duration")
-        if isinstance(data, dict) and isinstance(data.get("torque"), list | tuple) and "points" not in data:
-            return {**{key: value for key, value in data.items() if key != "torque"}, "points": data["torque"]}
-        return data
+        table = with_default(table, "down_duration", "duration")
+        if isinstance(table.get("torque"), list | tuple) and "points" not in table:
+            return {**{key: value for key, value in table.items() if key != "torque"}, "points": table["torque"]}
+        return table
 
     def breaches(self, case: Case, path: Path) -> Iterator[Breach]:
         if not case.polar_inertia:

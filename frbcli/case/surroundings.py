@@ -28,6 +28,7 @@ from frbcli.case.model import (
     SignedSpeed,
     Speed,
     Stiffness,
+    repeated,
 )
 from frbcli.case.over_time import MachineTable, OverTime, no_place, node_at, table_breaches
 from frbcli.case.reading.tables import Breach, Path
@@ -166,11 +167,7 @@ class Base(MachineTable):
                 yield Breach((*path, key), "is 0.", "Give the order or the speed of what shakes the ground.")
 
 
-def _as_list(given: object) -> object:
-    return [given] if isinstance(given, dict | Base) else given
-
-
-Bases = Annotated[tuple[Base, ...], BeforeValidator(_as_list), ONE_OR_MANY]
+Bases = Annotated[tuple[Base, ...], repeated(1), ONE_OR_MANY]
 
 
 Pull = Annotated[float, Quantity("N/m", "1e5 N/m", above=0)]
@@ -288,14 +285,7 @@ class Spring(MachineTable):
                 yield Breach((*path, "numbers", name), fault.problem, fault.remedy)
 
 
-def _both_directions(given: object) -> object:
-    """One quantity, used for both directions."""
-    if isinstance(given, str | int | float) and not isinstance(given, bool):
-        return [given, given]
-    return given
-
-
-DIRECTIONS = (BeforeValidator(_both_directions), AlsoAs(lambda both: [both["prefixItems"][0], both]))
+DIRECTIONS = (repeated(2), AlsoAs(lambda both: [both["prefixItems"][0], both]))
 Stiffnesses = Annotated[tuple[Stiffness, Stiffness], *DIRECTIONS]
 Dampings = Annotated[tuple[Damping, Damping], *DIRECTIONS]
 

@@ -1,25 +1,34 @@
-"""`frb cases`: the shipped cases, to print and to copy."""
+"""Commands for case files: `frb cases`, the shipped and the hard ones, to print and to copy; `frb schema` for editors;
+`frb docs`, the installed pages; `frb warm-up`, kernels compiled once."""
 
 from __future__ import annotations
 
+import html
+import re
+import shutil
+import sys
+import webbrowser
+from importlib.resources import files
+from operator import attrgetter
 from pathlib import Path
 
 import click
 
-from frbcli.cli.common import SETTING, Terminal, output_options
-from frbcli.cli.files import CASE_FILE, check_outputs, force_option, forced
-from frbcli.cli.options import Command, complete_key
+from frbcli.cli.common import Terminal, output_options, settings_option
+from frbcli.cli.options import CASE_FILE, Command, check_outputs, complete_case, force_option, forced
+from frbcli.cli.progress import display
+from frbcli.columns import Column, Shown, table_of
+from frbcli.errors import did_you_mean, input_error
 
 
 @click.command(cls=Command)
 @click.argument("names", nargs=-1, metavar="[NAME]...")
-@click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", shell_complete=complete_key,
-              help=f"{SETTING} Repeatable.")
+@settings_option
 @click.option("-o", "--output", metavar="CASE.toml", type=CASE_FILE, help="Copy the case to this file.")
 @click.option("--hard", is_flag=True, help="List the hard cases instead of the others.")
 @force_option("Replace a file at -o.")
 @output_options
-def command(
+def cases(
     names: tuple[str, ...], settings: tuple[str, ...], output: Path | None, hard: bool, terminal: Terminal
 ) -> None:
     """List the shipped cases; with NAME print that case's text, or copy it with -o FILE."""
@@ -30,8 +39,6 @@ def command(
     if names:
         _show(names[0], settings, output, hard, terminal)
     elif hard:
-        from frbcli.cli.hard import list_hard
-
         list_hard(terminal)
     else:
         _list(terminal)
@@ -41,12 +48,7 @@ def _show(name: str, settings: tuple[str, ...], output: Path | None, hard: bool,
     """Print a case or copy it."""
     from frbcli.case.reading.shipped import find_shipped
 
-    if hard:
-        from frbcli.cli.hard import hard_text
-
-        text = hard_text(name)
-    else:
-        text = find_shipped(name)
+    text = hard_text(name) if hard else find_shipped(name)
     if settings:
         from frbcli.case.reading.load import load_case_text
 
@@ -77,3 +79,146 @@ def _write(text: str, output: Path) -> None:
 
     check_outputs((output, NEW))
     write(output, NEW, text, forced())
+
+
+LIST = "list"  # table of the terminal
+
+# Of a HardCase
+HARD_CASE = (
+    Column("name", "", "name of the hard case", shown=(Shown("case"), Shown("case", table=LIST))),
+    Column("topic", "", "topic"),
+    Column("hard", "", "difficulty", shown=(Shown("difficulty"), Shown("difficulty", table=LIST)), flat=False),
+    Column("command", "", "command that it is for", attrgetter("words"), flat=False),
+    Column("expected", "", "how it has to end", attrgetter("end"), shown=(Shown("ends", table=LIST),)),
+    Column("why", "", "cause of that end", flat=False),
+)
+
+
+def list_hard(terminal: Terminal) -> None:
+    """The table of all hard cases."""
+    from frbcli.case.reading.shipped import hard_cases
+
+    table = table_of(HARD_CASE, hard_cases())
+    terminal.show("hard cases", table, LIST)
+    terminal.remark("`frb cases --hard NAME` prints one as a case file.")
+    terminal.emit({"command": "cases", "hard": table.documents()})
+
+
+def hard_text(name: str) -> str:
+    """The case file of a hard case: its shipped case with the settings put in. Raises InputError for an unknown name;
+    a case that has to be refused is given as its base and its settings."""
+    from frbcli.case.reading.shipped import hard_cases
+
+    (hard,) = hard_cases([name])
+    settings = "".join(f"#   --set '{text}'\n" for text in hard.settings)
+    head = f"# {hard.hard}\n# The shipped case {hard.base} for `frb {hard.command}`, with\n{settings}"
+    return head + (hard.case().source_text if hard.end != "input-error" else "# which has to be refused.\n")
+
+
+@click.command(cls=Command)
+@output_options
+def schema(terminal: Terminal) -> None:  # noqa: ARG001  # every command takes --json; this one prints JSON anyway
+    """Print the JSON Schema of a case file: editors complete and check case files with it."""
+    from frbcli.case.schema import json_schema
+
+    Terminal(json=True).emit(json_schema())
+
+
+INDEX = "README"
+PAGE = """<!doctype html>
+<html lang="en"><meta charset="utf-8"><title>{title}</title>
+<style>body {{ max-width: 60em; margin: 2em auto; padding: 0 1em; font-family: sans-serif; line-height: 1.5 }}
+img {{ max-width: 100% }} td, th {{ padding: 0 1em 0 0; text-align: left; vertical-align: top }}
+pre {{ background: #f4f4f4; padding: 0.5em; overflow-x: auto }}</style>
+<p><a href="README.html">contents</a></p>
+{body}</html>
+"""
+
+
+@click.command(cls=Command)
+@click.argument("page", default=INDEX, metavar="[PAGE]")
+@click.option("--text", is_flag=True, help="Print the text of the page.")
+@output_options
+def docs(page: str, text: bool, terminal: Terminal) -> None:
+    """Open the pages that are installed with frb in a browser, or print one of them; without a network."""
+    folder = _folder()
+    titles = {path.stem: _title(path) for path in sorted(folder.glob("*.md"))}
+    name = page.removesuffix(".md")
+    if name not in titles:
+        raise input_error("docs", "PAGE", page, "is no page.", did_you_mean(name, titles, "`frb docs` lists them."))
+    if text:
+        terminal.text((folder / f"{name}.md").read_text(encoding="utf-8"))
+        terminal.emit({"command": "docs", "page": name, "text": (folder / f"{name}.md").read_text(encoding="utf-8")})
+        return
+    opened = _as_html(folder, titles) / f"{name}.html"
+    if name == INDEX:
+        terminal.table("pages", ("name", "title"), list(titles.items()))
+    terminal.result(f"pages: {opened}")
+    if sys.stdout.isatty() and not terminal.silent:
+        webbrowser.open(opened.as_uri())
+    terminal.emit({"command": "docs", "pages": titles, "output": opened})
+
+
+def _folder() -> Path:
+    """Where the pages are: inside an installed package; next to the package in a checkout."""
+    package = Path(str(files("frbcli")))
+    installed = package / "shipped_docs"
+    return installed if installed.is_dir() else package.parent / "docs"
+
+
+def _title(path: Path) -> str:
+    with path.open(encoding="utf-8") as file:
+        return file.readline().lstrip("# ").strip()
+
+
+def _as_html(folder: Path, titles: dict[str, str]) -> Path:
+    """All pages as HTML with their pictures, in a directory of this user."""
+    from markdown_it import MarkdownIt
+
+    from frbcli.caches import temporary_cache
+
+    target, markdown = temporary_cache() / "docs", MarkdownIt("commonmark").enable("table")
+    target.mkdir(exist_ok=True)
+    shutil.copytree(folder / "images", target / "images", dirs_exist_ok=True)
+    for name, title in titles.items():
+        body = markdown.render((folder / f"{name}.md").read_text(encoding="utf-8"))
+        body = re.sub(r'href="([\w-]+)\.md', r'href="\1.html', body)
+        (target / f"{name}.html").write_text(PAGE.format(title=html.escape(title), body=body), encoding="utf-8")
+    return target
+
+
+@click.command(cls=Command)
+@click.argument("sources", nargs=-1, metavar="[CASE]...", shell_complete=complete_case)
+@settings_option
+@click.option("--jobs", type=click.IntRange(min=1), metavar="N", show_default="one for each core",
+              help="Processes.")  # fmt: skip
+@output_options
+def warm_up_cases(sources: tuple[str, ...], settings: tuple[str, ...], jobs: int | None, terminal: Terminal) -> None:
+    """Compile the kernels of CASE, or of all shipped cases, once, on all cores: for run-ups, stability, bearing sheets
+    and kinematic tests."""
+    if settings and not sources:
+        raise click.UsageError("--set is of a CASE.")
+    with display(terminal) as shown:
+        shown.line("Looking for the kernels; those that are missing are compiled, once.")
+        from frbcli.case.reading.load import load_case
+        from frbcli.studies.warm_up import warm_up
+
+        cases = [load_case(source, settings) for source in sources]
+        built = warm_up(cases, jobs or -1, lambda what, number, count: shown.line(f"{number} of {count}: {what}"))
+    if built.compiled:
+        terminal.show("compiled", built.table())
+        terminal.result(
+            f"Compiled kernels: {built.functions} functions in {built.wall_s:.0f} s, {built.cpu_s:.0f} s of CPU time."
+        )
+    else:
+        terminal.result("Nothing to compile: all kernels are on the disk.")
+    terminal.emit(
+        {
+            "command": "warm-up",
+            "cases": built.cases,
+            "compiled": built.table().documents(),
+            "functions": built.functions,
+            "cpu_s": built.cpu_s,
+            "wall_s": built.wall_s,
+        }
+    )

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.machines.static_tables import heat_document, reduction_document, show_heat, show_reduction
 from frbcli.cli.options import Command
+from frbcli.cli.studies.static_tables import heat_document, reduction_document, show_heat, show_reduction
 from frbcli.columns import document, documents, table_of
 
 if TYPE_CHECKING:

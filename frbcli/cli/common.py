@@ -28,8 +28,7 @@ from typing import TYPE_CHECKING, Any, TextIO, TypeVar, cast
 
 import click
 
-from frbcli.cli.files import INPUT, note_read
-from frbcli.cli.options import PER_MINUTE, Look, complete_case, complete_key, look_of
+from frbcli.cli.options import INPUT, PER_MINUTE, Look, complete_case, complete_key, look_of, note_read
 from frbcli.cli.process import OutputLost
 from frbcli.errors import printable
 from frbcli.units import HERTZ, SpeedUnit
@@ -232,6 +231,10 @@ def _console(stream: TextIO) -> Console:
     return Console(
         file=stream, force_terminal=False, no_color=True, width=PIPE_WIDTH, highlight=False, markup=False, emoji=False
     )
+
+
+settings_option = click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", shell_complete=complete_key,
+                               help=f"{SETTING} Repeatable.")  # fmt: skip
 
 
 def case_argument(

@@ -1,13 +1,19 @@
 """Options that several commands have, each declared once, and the kinds of their values; what the shell completes
 besides commands and options: shipped cases, files, keys of a case; and the look of pictures, by options of all commands
-that draw: size, resolution, limits, speeds per minute."""
+that draw: size, resolution, limits, speeds per minute.
+
+The files of a command: those that it reads, where its results go, and that these do not replace those.
+"""
 
 from __future__ import annotations
 
+import os
+import re
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from functools import wraps
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -15,6 +21,8 @@ from click.shell_completion import CompletionItem
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
+    from frbcli.results.write import Kind
+
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -52,8 +60,24 @@ COMMON = ("rotor.unbalance", "bearing.clearance", "oil.viscosity", "film.theory"
           "speed.to", "speed.duration", "accuracy.target", "output.step")  # fmt: skip
 
 
+class WrittenOption(click.ParamType[Any]):
+    """A value that is written as text; a default, which has its form already, stays."""
+
+    def read(self, text: str) -> Any:
+        """The value of a text. Raises ValueError with what is wrong."""
+        raise ValueError(text)
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The value of an option, which fails where the text is none."""
+        try:
+            return self.read(value) if isinstance(value, str) else value
+        except ValueError as fault:
+            listed = isinstance(param, click.Option) and param.multiple and "," in str(value)
+            self.fail(f"{value!r} {fault}{' Repeat the option for several values.' if listed else ''}", param, ctx)
+
+
 @dataclass(frozen=True)
-class QuantityOption(click.ParamType[float]):
+class QuantityOption(WrittenOption):
     """A quantity with a unit, as in the example; a bare number is in `unit`, SI. positive: it must be above 0."""
 
     name: str
@@ -61,21 +85,19 @@ class QuantityOption(click.ParamType[float]):
     example: str
     positive: bool = True
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """The number of a quantity in `unit`. Fails the option for anything else."""
+    def read(self, text: str) -> Any:
+        """The number of a quantity in `unit`."""
         from frbcli.units import is_per_minute, quantity
 
+        given: object = text
         with suppress(ValueError):  # then it has a unit
-            value = float(str(value))
-        try:
-            number = quantity(value, self.unit, self.example)
-        except ValueError as fault:
-            listed = isinstance(param, click.Option) and param.multiple and "," in str(value)
-            self.fail(f"{value!r} {fault}{' Repeat the option for several values.' if listed else ''}", param, ctx)
-        if self.unit == "Hz" and ctx is not None and is_per_minute(value):
-            ctx.meta[PER_MINUTE] = True
+            given = float(text)
+        number = quantity(given, self.unit, self.example)
+        context = click.get_current_context(silent=True)
+        if self.unit == "Hz" and context is not None and is_per_minute(text):
+            context.meta[PER_MINUTE] = True
         if self.positive and number <= 0.0:
-            self.fail(f'{value!r} is not greater than 0. Write e.g. "{self.example}".', param, ctx)
+            raise ValueError(f'is not greater than 0. Write e.g. "{self.example}".')
         return number
 
 
@@ -83,10 +105,10 @@ class QuantityOption(click.ParamType[float]):
 class UnitOption(QuantityOption):
     """A unit, alone, such as "um", or as a multiple of one, such as "125 um"."""
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
+    def read(self, text: str) -> Any:
         """The size of the unit in `unit`: 1e-6 for "um" in m."""
-        text = str(value).strip()
-        return super().convert(f"1 {text}" if text[:1].isalpha() or text.startswith("1/") else value, param, ctx)
+        text = text.strip()
+        return super().read(f"1 {text}" if text[:1].isalpha() or text.startswith("1/") else text)
 
 
 def range_ends(text: str) -> tuple[str, str] | None:
@@ -101,26 +123,24 @@ def range_ends(text: str) -> tuple[str, str] | None:
 class RangeOption(QuantityOption):
     """Two quantities, as "8000..12000 rpm": a unit at the end holds for both."""
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+    def read(self, text: str) -> Any:
         """The lower and the upper one in `unit`."""
-        if isinstance(value, tuple):
-            return value
-        texts = range_ends(str(value))
+        texts = range_ends(text)
         if texts is None:
-            self.fail(f'{value!r} is no range. Write e.g. "{self.example}".', param, ctx)
-        ends = [super(RangeOption, self).convert(end, param, ctx) for end in texts]
-        if ends[0] > ends[1]:
-            self.fail(f'{value!r} does not ascend. Write e.g. "{self.example}".', param, ctx)
-        return ends[0], ends[1]
+            raise ValueError(f'is no range. Write e.g. "{self.example}".')
+        low, high = map(super().read, texts)
+        if low > high:
+            raise ValueError(f'does not ascend. Write e.g. "{self.example}".')
+        return low, high
 
 
 @dataclass(frozen=True)
 class SupportOption(QuantityOption):
     """The support of a rotor: "free", "bearings" as in the case, or a stiffness."""
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+    def read(self, text: str) -> Any:
         """The word, or the stiffness in `unit`."""
-        return value if value in ("free", "bearings") else super().convert(value, param, ctx)
+        return text if text in ("free", "bearings") else super().read(text)
 
 
 @dataclass(frozen=True)
@@ -132,35 +152,30 @@ class KeyRange:
     high: str
 
 
-class KeyRangeOption(click.ParamType[KeyRange]):
+class KeyRangeOption(WrittenOption):
     """A key and its range, as bearing.clearance=30..45 um."""
 
     name = "range"
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> KeyRange:
-        """Key and range. Fails the option for anything else."""
-        if isinstance(value, KeyRange):
-            return value
-        key, _, span = str(value).partition("=")
+    def read(self, text: str) -> KeyRange:
+        """Key and range."""
+        key, _, span = text.partition("=")
         ends = range_ends(span)
         if not key.strip() or ends is None:
-            self.fail(f"{value!r} is no range of a key. Write e.g. bearing.clearance='30..45 um'.", param, ctx)
+            raise ValueError("is no range of a key. Write e.g. bearing.clearance='30..45 um'.")
         return KeyRange(key.strip(), *ends)
 
 
-class GradeOption(click.ParamType[float]):
+class GradeOption(WrittenOption):
     """A balance quality grade, in mm/s."""
 
     name = "grade"
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """Its number. Fails the option for anything else."""
+    def read(self, text: str) -> float:
+        """Its number."""
         from frbcli.linear.balance_quality import read_grade
 
-        try:
-            return read_grade(str(value))
-        except ValueError as fault:
-            self.fail(f"{value!r} {fault}", param, ctx)
+        return read_grade(text)
 
 
 KEY_RANGE = KeyRangeOption()
@@ -173,30 +188,27 @@ LOAD_OPTION = QuantityOption("load", "N", "30 N")
 STIFFNESS_OPTION = SupportOption("stiffness", "N/m", "5e6 N/m")
 
 
-class Names(click.ParamType[tuple[str, ...]]):
+class Names(WrittenOption):
     """Names separated by commas."""
 
     name = "names"
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:  # noqa: ARG002
+    def read(self, text: str) -> tuple[str, ...]:
         """The names without spaces around them."""
-        names = value if isinstance(value, tuple) else str(value).split(",")
-        return tuple(name.strip() for name in names if name.strip())
+        return tuple(name.strip() for name in text.split(",") if name.strip())
 
 
-class Numbers(click.ParamType[tuple[float, ...]]):
+class Numbers(WrittenOption):
     """Numbers separated by commas."""
 
     name = "numbers"
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...]:
-        """The numbers in their order. Fails the option for anything else."""
-        if isinstance(value, tuple):
-            return value
+    def read(self, text: str) -> tuple[float, ...]:
+        """The numbers in their order."""
         try:
-            return tuple(float(number) for number in str(value).split(","))
+            return tuple(map(float, text.split(",")))
         except ValueError:
-            self.fail(f"{value} is not a list of numbers, such as 1,0.5.", param, ctx)
+            raise ValueError("is not a list of numbers, such as 1,0.5.") from None
 
 
 def _models(name: str, what: str, of: str, default: str = "as in CASE") -> Callable[[Function], Function]:
@@ -305,53 +317,42 @@ class Look:
     rpm: bool = False
 
 
-@dataclass(frozen=True)
-class Size(click.ParamType[tuple[float, float]]):
+class Size(WrittenOption):
     """Width and height, such as "160 mm x 90 mm" or "160x90 mm", in inches."""
 
-    name: str = "size"
+    name = "size"
 
-    def convert(
-        self, value: object, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[float, float]:
-        """Width and height in inches. Fails the option for anything but WIDTHxHEIGHT."""
+    def read(self, text: str) -> tuple[float, float]:
+        """Width and height in inches."""
         from frbcli.units import quantity
 
-        if isinstance(value, tuple):
-            return value
-        width, by, height = str(value).partition("x")
+        width, by, height = text.partition("x")
         if not by:
-            self.fail(f'{value!r} is not a width and a height. Write e.g. "160 mm x 90 mm".', param, ctx)
-        unit = "".join(letter for letter in height if letter.isalpha())
+            raise ValueError('is not a width and a height. Write e.g. "160 mm x 90 mm".')
+        if not any(letter.isalpha() for letter in width):
+            width += " " + "".join(letter for letter in height if letter.isalpha())
         try:
-            if not any(letter.isalpha() for letter in width):
-                width = f"{width} {unit}"
-            sides = tuple(quantity(side.strip(), "m", "160 mm") / INCH for side in (width, height))
+            across, high = (quantity(side.strip(), "m", "160 mm") / INCH for side in (width, height))
         except ValueError as fault:
-            self.fail(f'{value!r} {fault} Write e.g. "160 mm x 90 mm".', param, ctx)
-        if not all(0.5 <= side <= 60.0 for side in sides):
-            self.fail(f"{value!r} is no size of a picture: 13 mm to 1500 mm.", param, ctx)
-        return sides[0], sides[1]
+            raise ValueError(f'{fault} Write e.g. "160 mm x 90 mm".') from None
+        if not (0.5 <= across <= 60.0 and 0.5 <= high <= 60.0):
+            raise ValueError("is no size of a picture: 13 mm to 1500 mm.")
+        return across, high
 
 
-@dataclass(frozen=True)
-class Span(click.ParamType[tuple[float, float]]):
+class Span(WrittenOption):
     """Two numbers, the lower one first, separated by a comma."""
 
-    name: str = "span"
+    name = "span"
 
-    def convert(
-        self, value: object, param: click.Parameter | None, ctx: click.Context | None
-    ) -> tuple[float, float]:
+    def read(self, text: str) -> tuple[float, float]:
         """The lower and the upper number."""
-        if isinstance(value, tuple):
-            return value
         try:
-            low, high = (float(number) for number in str(value).split(","))
+            low, high = map(float, text.split(","))
         except ValueError:
-            self.fail(f"{value!r} is not two numbers, such as 0,300.", param, ctx)
+            raise ValueError("is not two numbers, such as 0,300.") from None
         if not low < high:
-            self.fail(f"{value!r}: the lower number comes first.", param, ctx)
+            raise ValueError("does not ascend: the lower number comes first.")
         return low, high
 
 
@@ -385,3 +386,108 @@ def _option(name: str, field: str, **settings: Any) -> Callable[[Function], Func
             context.meta[_LOOK] = replace(look_of(context), **{field: value})
 
     return click.option(name, is_eager=True, expose_value=False, callback=remember, **settings)
+
+
+_READS, _FORCE = "frbcli.reads", "frbcli.force"  # in the context of a command
+
+class InputFile(click.Path):
+    """A file that the command reads, as a Path; no result of the command replaces it."""
+
+    def __init__(self) -> None:
+        super().__init__(path_type=Path)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The path, which the command then does not write."""
+        try:
+            path = Path(os.fsdecode(super().convert(value, param, ctx)))
+        except ValueError as error:  # of a name that no file can have
+            self.fail(f"{value!r} is no name of a file: {error}.", param, ctx)
+        note_read(path, ctx)
+        return path
+
+
+class InputFiles(WrittenOption):
+    """Several such files, separated by commas."""
+
+    name = "files"
+
+    def read(self, text: str) -> tuple[Path, ...]:
+        """The paths, which the command then does not write."""
+        context = click.get_current_context(silent=True)
+        return tuple(INPUT.convert(name.strip(), None, context) for name in text.split(",") if name.strip())
+
+
+class OutputFile(click.Path):
+    """A file that the command writes, as a Path. suffix: the end of its name; "" for any."""
+
+    def __init__(self, suffix: str = "") -> None:
+        super().__init__(path_type=Path)
+        self.suffix = suffix
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The path. Fails the option for a name with another end."""
+        path = super().convert(value, param, ctx)
+        if self.suffix and Path(os.fsdecode(path)).suffix.lower() != self.suffix:
+            name = f"{Path(os.fsdecode(path)).stem}{self.suffix}"
+            self.fail(f"{os.fsdecode(path)!r} has to end with {self.suffix}. Write -o {name}.", param, ctx)
+        return path
+
+
+class OutputFolder(OutputFile):
+    """A directory for files that the command writes, as a Path."""
+
+
+INPUT, INPUTS, OUTPUT, OUTPUT_FOLDER = InputFile(), InputFiles(), OutputFile(), OutputFolder()
+CASE_FILE, RUN_FILE, PAGE_FILE, CSV_FILE = map(OutputFile, (".toml", ".h5", ".html", ".csv"))
+
+
+def note_read(path: Path, context: click.Context | None) -> None:
+    """Remember that a command reads a file."""
+    if context is not None:
+        context.meta.setdefault(_READS, []).append(path)
+
+
+def force_option(
+    words: str = "Replace files that frb did not write.", exposed: bool = False
+) -> Callable[[Function], Function]:
+    """Give a command the option --force; exposed: it receives `force: bool`."""
+
+    def remember(context: click.Context, _: click.Parameter, force: bool) -> bool:
+        context.meta[_FORCE] = force
+        return force
+
+    return click.option("--force", is_flag=True, is_eager=True, expose_value=exposed, callback=remember, help=words)
+
+
+def forced() -> bool:
+    """Whether the command may replace files that frb did not write."""
+    context = click.get_current_context(silent=True)
+    return context is not None and bool(context.meta.get(_FORCE))
+
+
+def check_outputs(*files: tuple[Path | None, Kind], picture: Path | None = None) -> None:
+    """Raises InputError, before the work, if results of the command cannot have these places.
+
+    files: with their kinds, None is no result; picture: one more that is drawn; whoever wants none does not wait for
+    the library that draws.
+    """
+    from frbcli.results.write import PICTURES, require_places
+
+    wanted = [(file, kind) for file, kind in files if file is not None]
+    if picture is not None:
+        from frbcli.plot.style import check_picture
+
+        check_picture(picture, forced())
+        wanted.append((picture, PICTURES[picture.suffix.lower()]))
+    context = click.get_current_context(silent=True)
+    require_places(wanted, () if context is None else context.meta.get(_READS, ()), forced())
+
+
+def next_to(run: Path, what: str) -> Path:
+    """The default place of a result: next to its run."""
+    return run.parent / (run.stem + what)
+
+
+def here(case_name: str, what: str) -> Path:
+    """The default place of the result of a case: this directory, under the name of the case, not hidden."""
+    return Path((re.sub(r"[^\w.-]+", "-", case_name).lstrip(".-") or "run") + what)

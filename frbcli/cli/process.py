@@ -30,8 +30,7 @@ from time import monotonic, process_time
 from types import FrameType
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
-from frbcli.errors import INTERRUPTED, OutOfMemory
-from frbcli.runs.record.interrupt import SIGNALS
+from frbcli.errors import INTERRUPTED, SIGNALS, OutOfMemory
 
 if TYPE_CHECKING:
     from sys import UnraisableHookArgs

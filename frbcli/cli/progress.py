@@ -22,8 +22,7 @@ from typing import TYPE_CHECKING, TypeVar
 import click
 
 from frbcli.cli.common import WIDTH, Terminal
-from frbcli.cli.files import CSV_FILE, OUTPUT, check_outputs, force_option, forced
-from frbcli.cli.options import gathered, look_options
+from frbcli.cli.options import CSV_FILE, OUTPUT, check_outputs, force_option, forced, gathered, look_options
 from frbcli.errors import InputError
 from frbcli.units import HERTZ, SpeedUnit
 

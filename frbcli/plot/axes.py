@@ -26,11 +26,10 @@ from frbcli.plot.curves import Over, draw_curves, finish
 from frbcli.plot.machine.bearing import draw_coefficient
 from frbcli.plot.machine.modes import draw_frequencies
 from frbcli.plot.machine.response import draw_amplitude
-from frbcli.plot.run.motion import LAST_s, draw_eccentricity, draw_orbits
-from frbcli.plot.run.quantities import draw_quantity
-from frbcli.plot.run.summary import draw_spectrum_at
+from frbcli.plot.motion import LAST_s, draw_eccentricity, draw_orbits, draw_quantity
 from frbcli.plot.signals import ends
 from frbcli.plot.style import BLACK, COLOURS, NotebookFigure, legend_beside, styled
+from frbcli.plot.summary import draw_spectrum_at
 from frbcli.plot.waterfall import DECIBELS, LevelScale, draw_levels, run_spectra
 from frbcli.results.store import Run
 

@@ -20,7 +20,7 @@ from matplotlib.ticker import MaxNLocator
 
 from frbcli.analysis.signals import films, joined, points, speed_at
 from frbcli.case.run import speed_unit_of
-from frbcli.plot.run.motion import LAST_s
+from frbcli.plot.motion import LAST_s
 from frbcli.plot.signals import MICRO, at_times, cut, ends, heading, motion, shell
 from frbcli.plot.style import BLUE, GREY, LEVEL_MAP, VERMILION, new_figure, refused, styled
 from frbcli.results.container import refuse

@@ -21,23 +21,23 @@ from frbcli.errors import input_error
 from frbcli.plot.style import Picture, new_figure, styled, wrap_title
 
 PICTURES = {  # class of a result: module in this room, and its function
-    "AccuracyLadder": "sweep:accuracy_figure",
-    "AgainstMeasured": "compare:against_figure",
+    "AccuracyLadder": "studies:accuracy_figure",
+    "AgainstMeasured": "studies:against_figure",
     "BallSheet": "machine.bearing:ball_figure",
     "BearingSheet": "machine.bearing:bearing_figure",
-    "Comparison": "compare:comparison_figure",
+    "Comparison": "studies:comparison_figure",
     "CriticalMap": "machine.response:critical_map_figure",
     "DampedModes": "machine.modes:shapes_figure",
-    "Fit": "compare:fit_figure",
+    "Fit": "studies:fit_figure",
     "KinematicTest": "machine.film:kinematic_figure",
     "LimitCycles": "machine.limit_cycles:limit_cycles_figure",
     "Modes": "machine.modes:modes_figure",
     "Response": "machine.response:response_figure",
-    "Run": "run.summary:summary_figure",
+    "Run": "summary:summary_figure",
     "Stability": "machine.modes:campbell_figure",
-    "StabilityMap": "machine.stability_map:stability_map_figure",
-    "Sweep": "sweep:sweep_figure",
-    "ThrustSheet": "machine.thrust:thrust_figure",
+    "StabilityMap": "machine.limit_cycles:stability_map_figure",
+    "Sweep": "studies:sweep_figure",
+    "ThrustSheet": "machine.bearing:thrust_figure",
 }
 OVERLAYS = {  # of several results over each other
     "BearingSheet": "axes:bearing",

@@ -19,6 +19,7 @@ from frbcli.analysis.order_tracking import CELLS
 from frbcli.analysis.signals import bearing_clearance, films, in_film, located, point_of, points, speed_at
 from frbcli.arrays import Array
 from frbcli.case.reading.settings import TomlFault, parse
+from frbcli.case.reading.tables import table
 from frbcli.film.cavitation.table import label_of
 from frbcli.plot.style import MOST_MARKED, plain
 from frbcli.results.container import refuse
@@ -183,17 +184,12 @@ def case_tables(run: Run) -> dict[str, Any]:
 
 def model(run: Run) -> str:
     """The models of the film in words, as far as the run's case says them. Raises as case_tables."""
-    film = case_tables(run).get("film")
-    if not isinstance(film, dict):
-        return ""
-    theory, cavitation = film.get("theory"), film.get("cavitation")
-    cavitation = next(iter(cavitation), "") if isinstance(cavitation, dict) else cavitation
-    if not isinstance(cavitation, str) or not _MODEL.fullmatch(cavitation):
-        cavitation = ""
+    film = table(case_tables(run), "film")
+    laws = table(film, "cavitation")  # of earlier versions: the law's numbers in a table of its name
+    theory, cavitation = film.get("theory"), str(next(iter(laws), "") if laws else film.get("cavitation", ""))
+    cavitation = cavitation if _MODEL.fullmatch(cavitation) else ""
     words = [label_of(cavitation)]
-    given = film.get("cavitation")
-    own = (given if isinstance(given, dict) else film).get(cavitation)  # the law's numbers are a table of its name
-    if isinstance(own, dict) and own.get("form") == "published":
+    if table(laws or film, cavitation).get("form") == "published":
         words.append("published form")
     if theory in ("short", "finite"):
         words.append(f"{theory} bearing")

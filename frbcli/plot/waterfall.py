@@ -29,8 +29,7 @@ from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case_text
 from frbcli.case.run import speed_unit_of
 from frbcli.errors import InputError
-from frbcli.plot.cascade import draw_cascade
-from frbcli.plot.curves import WORDS, Over
+from frbcli.plot.curves import WORDS, Over, draw_cascade
 from frbcli.plot.signals import (
     MICRO,
     at_times,

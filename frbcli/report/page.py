@@ -28,11 +28,10 @@ from frbcli.case.reading.load import load_case_text
 from frbcli.case.run import speed_unit_of
 from frbcli.errors import FrbError, InputError, input_error, printable
 from frbcli.plot import style as plot_style
-from frbcli.plot.run.motion import displacement_figure, eccentricity_figure
-from frbcli.plot.run.quantities import SUBJECTS, quantity_figure
-from frbcli.plot.run.summary import FEWEST_SAMPLES, ring_speed_figure, speeds_figure, times_of_speeds
+from frbcli.plot.motion import SUBJECTS, displacement_figure, eccentricity_figure, quantity_figure
 from frbcli.plot.signals import bearing_of, clearance, ends, events, heading
 from frbcli.plot.style import Picture, narrowed
+from frbcli.plot.summary import FEWEST_SAMPLES, ring_speed_figure, speeds_figure, times_of_speeds
 from frbcli.plot.waterfall import (
     Levels,
     LEVELS_dB,

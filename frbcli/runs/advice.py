@@ -17,8 +17,8 @@ from frbcli.results.records import WHOLE
 from frbcli.results.store import Run
 from frbcli.runs.header import forcing
 from frbcli.runs.heat import hot_film
+from frbcli.runs.interruption import number_of
 from frbcli.runs.march import UNBOUNDED
-from frbcli.runs.record.restored import number_of
 from frbcli.scene.changes import case_at, step_times
 from frbcli.scene.coupling import coupling_of
 from frbcli.scene.films import film_places

@@ -33,7 +33,7 @@ from frbcli.rotor.assembly import PLANE, LinearRotor, unbalance_shares
 from frbcli.rotor.loads import loads_at
 from frbcli.runs.header import FLOW, FORCE, FRICTION, POWER, SHARE, THICKNESS, TORQUE, signal_names, tilt_names
 from frbcli.runs.inputs import FilmNumbers, Rotation, brakes, friction_of_films, unchanged
-from frbcli.runs.record.restored import WrongCheckpoint, array
+from frbcli.runs.interruption import WrongCheckpoint, array
 from frbcli.scene.machine.system import System
 from frbcli.solve.stage.forces import felt_motion, touches
 from frbcli.solve.state import GRID, SLIP, SUM, TIME, Control, State

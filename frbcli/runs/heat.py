@@ -1,9 +1,13 @@
 """The heat of a run: what the time loop carries along, its signals, and its balance.
+
+The axis of a run: the motion along it, and how near its collar comes to its pads.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,12 +16,16 @@ from frbcli.case.over_time import first
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.kinds.contract import Films
+from frbcli.results.columns import AXIAL_SIGNALS
 from frbcli.results.store import Run
+from frbcli.rotor.loads import SpeedProfile
 from frbcli.runs.inputs import FilmNumbers, signal_of
-from frbcli.runs.record.restored import WrongCheckpoint, array, number_of
+from frbcli.runs.interruption import WrongCheckpoint, array, number_of
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.heat import Heat, heat_of, warm_system
+from frbcli.scene.machine.rotor import collar_tilt
 from frbcli.scene.machine.system import System
+from frbcli.scene.machine.turbocharger import shaft_of
 from frbcli.scene.planning.film_choice import Plan
 from frbcli.solve.heat import COLUMNS, NARROWEST, NO_HEAT, LumpedHeat, NoHeat, columns_of
 from frbcli.thermal.exchange import (
@@ -40,6 +48,9 @@ from frbcli.thermal.exchange import (
     arrays_of,
 )
 from frbcli.thermal.model import clearances_at, closed_gap, viscosities_at
+
+if TYPE_CHECKING:
+    from frbcli.elements.collar import Collar
 
 QUANTITIES = ("temperature_{}_K", "viscosity_{}_Pa_s", "clearance_{}_m", "power_{}_W", "flow_{}_m3_s")
 AT_END = [POWER, FLOW]  # what the films did at the end of a step, from which the signals go on
@@ -200,3 +211,64 @@ def _lumped(case: Case, system: System, heat: Heat) -> LumpedHeat:
         now=now,
         gain=np.zeros(n),
     )
+
+
+SLOWER = 1e-3  # share of a speed by which the slowest one that is known may be missed
+POSITION, THICKNESS, LOSS = (column.name for column in AXIAL_SIGNALS)
+
+
+@dataclass(frozen=True)
+class RunAxis:
+    """The axis of a run under an axial load. tilt: (2, n) of the collar against its pads, None where it does not tilt;
+    step: of the output in s; course: (3, k) AxialMotion.at all output times, taken at once: the round-off of some of
+    them would depend on how many are asked for, and a resumed run would differ. speeds: (k,) rad/s, None but where the
+    speed is free: course is that of a collar which rests at each of them."""
+
+    collar: Collar
+    tilt: Array | None
+    step: float
+    course: Array
+    speeds: Array | None = None
+
+    @classmethod
+    def of(cls, case: Case, profile: SpeedProfile, step: float) -> RunAxis | None:
+        """The axis of a run of a case with an output step in s, None without an axial load. Raises as axial_motion."""
+        from frbcli.elements.collar import axial_motion, collar_of  # films on pads take a second to import
+
+        collar = collar_of(case)
+        if collar is None:
+            return None
+        if case.drive is not None:
+            speeds, *course = _collar_at_rest(collar)
+            return cls(collar, collar_tilt(case), step, np.array(course), speeds)
+        motion = axial_motion(case, profile, shaft_of(case).mass)
+        assert motion is not None
+        times: Array = step * np.arange(int(profile.end / step) + 2, dtype=np.float64)
+        return cls(collar, collar_tilt(case), step, np.array(motion.at(times)))
+
+    def signals(self, times: Array, speeds: Array, q: Array) -> dict[str, Array]:
+        """The signals at k output times in s, with speeds in rad/s and displacements q (k, n) of the machine."""
+        if self.speeds is None:
+            position, gap, loss = self.course[:, np.rint(times / self.step).astype(np.int64)]
+        else:
+            position, gap, loss = (np.interp(speeds, self.speeds, each) for each in self.course)
+            gap = np.where(speeds < self.speeds[0] * (1.0 - SLOWER), self.collar.thin, gap)
+        if self.tilt is not None:
+            gap = gap - self.collar.bearing.outer_radius * np.linalg.norm(q @ self.tilt.T, axis=1)
+        return {POSITION: position, THICKNESS: gap, LOSS: loss}
+
+    def touch(self, signals: Mapping[str, Array]) -> int | None:
+        """The first sample at which the collar touches its pads, None where it does not."""
+        touching = np.flatnonzero(signals[THICKNESS] <= self.collar.thin)
+        return int(touching[0]) if len(touching) else None
+
+
+def _collar_at_rest(collar: Collar) -> Array:
+    """(4, k) speeds, positions, gaps and losses of a collar at rest: down to standstill where the load ends there."""
+    from frbcli.elements.collar import rests_over_speed
+
+    rests = rests_over_speed(collar)
+    rows = [(rest.omega, collar.position(rest), rest.gap, rest.torque * rest.omega) for rest in rests]
+    if not collar.load_at(0.0):
+        rows.insert(0, (0.0, *rows[0][1:3], 0.0))
+    return np.array(rows).T

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,7 +25,7 @@ from frbcli.runs.films import (
     tilt_signals,
 )
 from frbcli.runs.header import FLOW, named, pin_signals, recorded, ring_names
-from frbcli.runs.heat import RunHeat
+from frbcli.runs.heat import RunAxis, RunHeat
 from frbcli.runs.inputs import (
     FilmNumbers,
     RunInputs,
@@ -39,7 +38,7 @@ from frbcli.runs.inputs import (
     rotation_of,
     supplied,
 )
-from frbcli.runs.record.restored import WrongCheckpoint, array, check_samples, restored
+from frbcli.runs.interruption import WrongCheckpoint, array, check_samples, restored
 from frbcli.runs.start import (
     control_of,
     first_state,
@@ -72,9 +71,6 @@ from frbcli.solve.state import (
     LoopOutput,
 )
 from frbcli.solve.time_loop import NOTES, Notes, advance, advance_watched
-
-if TYPE_CHECKING:
-    from frbcli.runs.axis import RunAxis
 
 BUFFER = 16384  # output samples between two looks at the clock, at least
 # Steps between two looks at the clock, which cannot be interrupted: as many as take CHUNK_s.
@@ -121,7 +117,7 @@ class March:
         system = self._system
         self._heat = RunHeat(self._segments[0].case, plan, system)
         self._control = control_of(case, plan, system.asperities)
-        self._axis = _axis_of(case, self._profile, self._control.output_step) if case.loads_a_collar else None
+        self._axis = RunAxis.of(case, self._profile, self._control.output_step) if case.loads_a_collar else None
         self._tableau = METHODS[plan.method].tableau
         with advised(case):
             self._state = first_state(case.start, self._inputs.at_start(self._heat.start), profile)
@@ -407,10 +403,3 @@ class March:
             cpu_s=self._cpu_s,
             over_plan=self._cpu_s / max(self._expected.cpu_s * self._course.share(t), 1e-9),
         )
-
-
-def _axis_of(case: Case, profile: SpeedProfile, step: float) -> RunAxis | None:
-    """The axis of a run under an axial load."""
-    from frbcli.runs.axis import RunAxis  # films on pads take a second to import
-
-    return RunAxis.of(case, profile, step)

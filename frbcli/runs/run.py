@@ -21,9 +21,8 @@ from frbcli.results.store import Header, Run, RunWriter, check_output, read_run
 from frbcli.rotor.loads import SpeedProfile
 from frbcli.runs.error_budget import quiet_until
 from frbcli.runs.header import PROGRAM, header, version_of
+from frbcli.runs.interruption import WrongCheckpoint, held_back
 from frbcli.runs.march import March, Progress
-from frbcli.runs.record.interrupt import held_back
-from frbcli.runs.record.restored import WrongCheckpoint
 from frbcli.runs.second_run import SECOND_RUN, SECOND_RUN_PREDICTED, in_finer_steps, on_fewer_cells, with_second_run
 from frbcli.scene.cost import ExpectedCost
 from frbcli.scene.cost_limits import require_affordable

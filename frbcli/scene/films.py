@@ -8,6 +8,8 @@ A tilt (t_x, t_y) is a small rotation about the axes through the middle of the b
 lies at (x + z t_y, y - z t_x).
 
 The channels of floating rings: the pressure of their feed holes, or how they couple the two films of a ring.
+
+The keys of a case's bearings and films, as a case file or --set writes them.
 """
 
 from __future__ import annotations
@@ -20,7 +22,8 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing, SingleFilmBearing
-from frbcli.case.film import FilmGeometry, FilmModel
+from frbcli.case.elements import Element
+from frbcli.case.film import FilmGeometry, FilmModel, RingFilm
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.case.supplies import MIDDLE, Bores
@@ -34,7 +37,6 @@ from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.grid import run_grid
 from frbcli.film.gap import NO_BATH, Diffusion, Section, ends_at_ambient, smallest_gap, whole_width
 from frbcli.scene.gate.rule import ROTATION, SQUEEZE
-from frbcli.scene.keys import bearing_key
 
 Pair = tuple[float, float]
 NONE = (0.0, 0.0)
@@ -453,3 +455,24 @@ def volume_film(
     speed = 2.0 * math.pi * max(top, 1.0)
     reference = PUMPED * 0.5 * speed / section.aspect
     return VolumeFilm(section, run_grid(section, cells), law, reference, edged)
+
+
+def bearing_key(case: Case, index: int) -> str:
+    """The key of a bearing with a film: "bearing", or "bearing.0" where there are several, with or without one."""
+    keyed = zip(case.bearing_keys, case.placed_bearings, strict=True)
+    return [key for key, bearing in keyed if not isinstance(bearing, Element)][index]
+
+
+def film_keys(case: Case) -> tuple[str, ...]:
+    """The keys of all films in the order of film_places, e.g. "bearing" or "bearing.1.inner"."""
+    keyed = zip(case.given_keys, case.given_bearings, strict=True)
+    own = (f"{key}.{film}".rstrip(".") for key, bearing in keyed for film in bearing.film_keys)
+    return (*own, *(each.key for each in DamperElement.of(case)))
+
+
+def cavitation_keys(case: Case) -> tuple[tuple[str, str], ...]:
+    """Where the cavitation model of each film is written, a key of its own or film.cavitation, and the model."""
+    return tuple(
+        (f"{key}.cavitation" if isinstance(film, RingFilm) and film.cavitation else "film.cavitation", name)
+        for key, film, name in zip(film_keys(case), case.films, case.cavitations, strict=True)
+    )

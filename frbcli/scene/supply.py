@@ -24,8 +24,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import FilmUnsolved, NotConverged
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.section_faults import is_unfed
-from frbcli.scene.films import film_places, film_section
-from frbcli.scene.keys import film_keys
+from frbcli.scene.films import film_keys, film_places, film_section
 from frbcli.scene.planning.film_choice import form_of
 from frbcli.units import display
 

@@ -30,8 +30,8 @@ from frbcli.columns import Column, Shown, Table, Tabular, named, spread_table
 from frbcli.errors import InputError, NotConverged, input_error
 from frbcli.results.records import SPEED
 from frbcli.results.store import Run
+from frbcli.runs.interruption import Interrupt, deaf, held_back
 from frbcli.runs.march import Progress
-from frbcli.runs.record.interrupt import Interrupt, deaf, held_back
 from frbcli.runs.run import rundown, runup
 
 FEWEST = 4  # speeds that both runs have

@@ -24,7 +24,7 @@ from frbcli.errors import NotConverged
 from frbcli.linear.sheets.bearing import bearing_sheet
 from frbcli.linear.stability import stability_points
 from frbcli.runs.inputs import films_change, machine_inputs
-from frbcli.runs.record.interrupt import deaf
+from frbcli.runs.interruption import deaf
 from frbcli.runs.run import runup
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import BEARING, KINEMATIC, ROTATION, RUN, STABILITY

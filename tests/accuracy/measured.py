@@ -8,14 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from frbcli.case.reading.load import load_case
+from frbcli.plot.studies import accuracy_figure
 from frbcli.plot.style import save_figure
-from frbcli.plot.sweep import accuracy_figure
 from frbcli.runs.run import runup
 from frbcli.scene.cost import expected_cost
 from frbcli.scene.planning.cell_choice import run_up_profile
 from frbcli.scene.planning.plan import make_plan
-from frbcli.studies.accuracy import accuracy
-from frbcli.studies.ladder import RungResult
+from frbcli.studies.accuracy import RungResult, accuracy
 
 # How long the ladder of a case is followed, in s; None: the whole run. Finer meshes and tolerances of expensive cases
 # cost up to a hundred times as much as the run itself.

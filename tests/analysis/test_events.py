@@ -21,7 +21,7 @@ from frbcli.case.schema import Case
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.linear import critical_speeds
 from frbcli.linear.critical_speeds import linear_critical_speeds
-from frbcli.plot.run.summary import _words
+from frbcli.plot.summary import _words
 from frbcli.results.columns import event_name
 from frbcli.results.store import Run
 from frbcli.runs.run import runup

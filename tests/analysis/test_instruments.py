@@ -16,7 +16,7 @@ from frbcli.analysis.measured import Measurement, measured_run
 from frbcli.analysis.order_tracking import tacho_speed
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
-from frbcli.results.measured.reading import read_columns
+from frbcli.results.measured import read_columns
 from frbcli.results.store import Run
 from frbcli.units import SPEED, ValueFault, quantity
 

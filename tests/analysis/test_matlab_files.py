@@ -17,7 +17,7 @@ from frbcli.analysis.measured import Measurement, measured_run
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
 from frbcli.plot.waterfall import waterfall_figure
-from frbcli.results.measured.reading import read_columns
+from frbcli.results.measured import read_columns
 
 RATE_Hz, SPEED_Hz = 4000.0, 120.0
 TIME = np.arange(400) / RATE_Hz
@@ -248,7 +248,7 @@ def test_a_universal_file_without_responses_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_universal_file_asks_for_its_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("frbcli.results.measured.reading.find_spec", lambda _: None)
+    monkeypatch.setattr("frbcli.results.measured.find_spec", lambda _: None)
     (tmp_path / "run.uff").write_text("-1", encoding="utf-8")
     with pytest.raises(InputError, match=r"pip install frbcli\[uff\]"):
         read_columns(tmp_path / "run.uff")

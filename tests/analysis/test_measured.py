@@ -21,7 +21,7 @@ from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
 from frbcli.plot.signals import clearance
 from frbcli.plot.waterfall import LevelScale, waterfall_figure
-from frbcli.results.measured.columns import unit_in
+from frbcli.results.measured_columns import unit_in
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
 

@@ -22,7 +22,7 @@ from frbcli.case.schema import Case
 from frbcli.case.supplies import CircumferentialGroove
 from frbcli.errors import Fault, InputError
 from frbcli.runs.run import runup
-from frbcli.studies.sweep.sweep import Workers
+from frbcli.studies.sweep import Workers
 
 RIGID: dict[str, Any] = {
     "rotor": {"kind": "rigid", "mass": 6.1, "unbalance": 3e-6},

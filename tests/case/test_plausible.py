@@ -7,10 +7,9 @@ import math
 
 import pytest
 
-from frbcli.case.reading.hard import hard_cases
 from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case, load_case_text
-from frbcli.case.reading.shipped import shipped_names
+from frbcli.case.reading.shipped import hard_cases, shipped_names
 from frbcli.cli.main import run as frb
 from frbcli.errors import Fault, InputError
 from frbcli.runs.run import run_cost

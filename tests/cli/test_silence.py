@@ -36,7 +36,7 @@ COMMANDS = {
     "report": ("frbcli.report.page", "write_report", ("run.h5",)),
     "waterfall": ("frbcli.plot.waterfall", "run_spectra", ("run.h5",)),
     "accuracy": ("frbcli.studies.accuracy", "accuracy", ("jeffcott", *SHORT, "--until", "10 ms")),
-    "sweep": ("frbcli.studies.sweep.sweep", "sweep",
+    "sweep": ("frbcli.studies.sweep", "sweep",
               ("jeffcott", *SHORT, "--set", "oil.viscosity=9 mPa*s,10 mPa*s", "--stability")),
     "plot": ("frbcli.plot.style", "save_figure", ("run.h5",)),
 }  # fmt: skip

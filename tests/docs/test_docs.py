@@ -13,7 +13,7 @@ from pages import analysis_matrix, case_reference, column_tables, hard_cases_pag
 from paths import ROOT
 
 import frbcli
-from frbcli.case.reading.hard import hard_cases
+from frbcli.case.reading.shipped import hard_cases
 from frbcli.cli.main import COMMANDS, frb, run
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]

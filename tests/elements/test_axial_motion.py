@@ -13,7 +13,7 @@ import frbcli
 from frbcli.case.schema import Case
 from frbcli.elements.collar import AxialMotion, axial_motion, collar_of
 from frbcli.errors import InputError
-from frbcli.plot.run.quantities import quantity_figure
+from frbcli.plot.motion import quantity_figure
 from frbcli.rotor.loads import speed_profile
 from frbcli.scene.machine.rotor import collar_tilt, make_rotor
 from frbcli.scene.planning.cell_choice import run_up_profile

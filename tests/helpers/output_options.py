@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import click
 
-from frbcli.cli.files import InputFile, OutputFile, OutputFolder
 from frbcli.cli.main import COMMANDS, command_named
+from frbcli.cli.options import InputFile, OutputFile, OutputFolder
 
 SETTINGS = ("film.theory=short", "speed.duration=0.1 s")  # of a run of jeffcott that takes no time
 SHORT = tuple(word for setting in SETTINGS for word in ("--set", setting))
@@ -38,7 +38,7 @@ def output_options() -> list[Option]:
 
 
 def other_paths() -> list[tuple[str, str | None]]:
-    """Parameters that are paths and neither read nor written by the types of `frbcli.cli.files`."""
+    """Parameters that are paths and neither read nor written by the types of `frbcli.cli.options`."""
     return [
         (command, option.name)
         for command in COMMANDS

@@ -11,7 +11,7 @@ from marches import DIAMETRAL, DISK, LENGTH, POLAR, RHO, SPAN, SPEED, WIDTH, D, 
 import frbcli
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
-from frbcli.cli.machines.stability import _point as document_of
+from frbcli.cli.studies.stability import _point as document_of
 from frbcli.columns import table_of
 from frbcli.elements.supports import HousingElement
 from frbcli.equilibrium.resting import resting_position

@@ -38,7 +38,7 @@ HEADS = {".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}
 PICTURE = {suffix: head + OWN + bytes(500) for suffix, head in HEADS.items()}
 COMPUTED = (
     "linear.sheets.bearing.bearing_sheet", "linear.response.response", "linear.stability.stability",
-    "studies.sweep.workers.threshold_alone", "cycles.limit_cycles.limit_cycles", "cycles.limit_cycles.threshold_kind",
+    "studies.sweep_workers.threshold_alone", "cycles.limit_cycles.limit_cycles", "cycles.limit_cycles.threshold_kind",
     "studies.fit.fit", "studies.accuracy.accuracy", "bearing_tests.kinematic.rotation", "report.page.report",
     "bearing_tests.kinematic.squeeze", "bearing_tests.kinematic.whirl",
 )  # fmt: skip

@@ -16,7 +16,7 @@ from paths import DOCS
 
 from frbcli.balancing import PLANES, POINTS
 from frbcli.bearing_tests.columns import GAS, MOMENT, MOMENT_HISTORY, RESULT, STRIBECK, moment_columns
-from frbcli.cli.hard import HARD_CASE
+from frbcli.cli.cases import HARD_CASE
 from frbcli.columns import Column, Columns
 from frbcli.cycles.columns import (
     MISSING,
@@ -54,11 +54,11 @@ from frbcli.linear.damped_modes import API_POINTS, ISO_POINTS, MARGINS
 from frbcli.linear.modes import CRITICAL_SPEEDS
 from frbcli.results.columns import EVENTS, MACHINE_SIGNALS, PART_SIGNALS
 from frbcli.scene.machine.findings import FILM_LOADS, FILM_OPERATION, FILM_TILTS
+from frbcli.studies.accuracy import LADDER_COLUMNS
 from frbcli.studies.against import DEVIATIONS, RIDGES
 from frbcli.studies.compare import HEAT, VARIANT
 from frbcli.studies.fit import FITTED
-from frbcli.studies.ladder import LADDER_COLUMNS
-from frbcli.studies.sweep.sweep import point_columns
+from frbcli.studies.sweep import point_columns
 
 
 def of_pandas(columns: Columns) -> Columns:

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from paths import ROOT
 from studies.hard_runs.cases import REFERENCES, RUNS, Outcome, Reference, apart, outcome
 
-from frbcli.case.reading.hard import HardCase, hard_cases
 from frbcli.case.reading.load import load_case
+from frbcli.case.reading.shipped import HardCase, hard_cases
 from frbcli.case.schema import Case
 from frbcli.scene.planning.plan import make_plan
 from frbcli.studies.accuracy import planned_rung

@@ -22,8 +22,8 @@ import frbcli
 from frbcli.cli.main import frb
 from frbcli.cli.options import Size
 from frbcli.plot.machine.modes import campbell_figure
+from frbcli.plot.motion import eccentricity_figure
 from frbcli.plot.picture import fit
-from frbcli.plot.run.motion import eccentricity_figure
 from frbcli.plot.style import COLOURS
 from frbcli.plot.waterfall import LevelScale, waterfall_figure
 from frbcli.results.store import Run

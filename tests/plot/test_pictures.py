@@ -17,8 +17,7 @@ from frbcli.case.reading.load import load_case
 from frbcli.columns import table_of
 from frbcli.linear.sheets.thrust import thrust_sheet
 from frbcli.plot import style
-from frbcli.plot.machine.thrust import thrust_figure
-from frbcli.plot.run.summary import summary_figure
+from frbcli.plot.machine.bearing import thrust_figure
 from frbcli.plot.style import (
     legend_below,
     name_of_key,
@@ -27,6 +26,7 @@ from frbcli.plot.style import (
     styled,
     with_subscripts,
 )
+from frbcli.plot.summary import summary_figure
 from frbcli.results.columns import EVENTS
 
 

@@ -21,12 +21,11 @@ from frbcli.analysis.order_tracking import order_tracks
 from frbcli.case.reading.load import load_case
 from frbcli.errors import InputError, RunFileError
 from frbcli.plot.curves import orders_figure
+from frbcli.plot.motion import displacement_figure, eccentricity_figure, orbit_figure, quantity_figure, visible_steps
 from frbcli.plot.picture import fit
-from frbcli.plot.run.motion import displacement_figure, eccentricity_figure, orbit_figure, visible_steps
-from frbcli.plot.run.quantities import quantity_figure
-from frbcli.plot.run.summary import ring_speed_figure, summary_figure
 from frbcli.plot.signals import DRAWN_POINTS, Envelope, at_times, clearance, curve, labels, model
 from frbcli.plot.style import new_figure, picture, save_figure, styled
+from frbcli.plot.summary import ring_speed_figure, summary_figure
 from frbcli.plot.waterfall import LEVELS_dB, run_spectra, waterfall_figure
 from frbcli.results.records import pieces
 from frbcli.results.store import Run
@@ -328,7 +327,7 @@ def test_drawing_leaves_matplotlib_as_it_was(run: Run) -> None:
 
 
 def test_drawing_does_not_import_pyplot() -> None:
-    code = "import sys, frbcli.plot.run.summary, frbcli.plot.run.motion; sys.exit('matplotlib.pyplot' in sys.modules)"
+    code = "import sys, frbcli.plot.summary, frbcli.plot.motion; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=False).returncode == 0
 
 
@@ -368,7 +367,7 @@ def test_curves_over_speed_are_the_same_however_they_are_read(ringed: Run, monke
 
 def test_a_long_orbit_shows_all_that_can_be_seen(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     x, y = run.signal("journal_x_m"), run.signal("journal_y_m")
-    monkeypatch.setattr("frbcli.plot.run.motion.ALL_DRAWN", 1000)
+    monkeypatch.setattr("frbcli.plot.motion.ALL_DRAWN", 1000)
     begins, ends, gaps = np.stack(visible_steps(x, y, 0, len(run))).reshape(2, -1, 3).T
     assert np.isnan(gaps).all()
     assert len(begins) < 0.1 * len(run)

@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 
 from frbcli.errors import InputError
-from frbcli.studies.sweep import workers as sweep_workers
-from frbcli.studies.sweep.workers import Workers, _client, _local_client, check_workers
+from frbcli.studies import sweep_workers as sweep_workers
+from frbcli.studies.sweep_workers import Workers, _client, _local_client, check_workers
 
 distributed = pytest.importorskip("distributed")
 pytestmark = pytest.mark.filterwarnings("default")  # not of frb

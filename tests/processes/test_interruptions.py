@@ -24,7 +24,7 @@ from frbcli.case.reading.load import load_case
 from frbcli.cli import process as cli_process
 from frbcli.results.container import locked
 from frbcli.results.store import read_run
-from frbcli.runs.record.interrupt import deaf
+from frbcli.runs.interruption import deaf
 from frbcli.runs.run import runup
 
 QUICK = ["jeffcott", *SHORT]

@@ -23,7 +23,7 @@ from frbcli.case.reading.shipped import shipped_cases
 from frbcli.cli.main import frb
 from frbcli.elements.table import ELEMENTS, symbols_at
 from frbcli.errors import InputError, RunFileError
-from frbcli.plot.run.summary import between
+from frbcli.plot.summary import between
 from frbcli.plot.waterfall import LOWEST_dB, STEP_dB
 from frbcli.report.page import report
 from frbcli.report.sketch import SYMBOLS, film_sketches, rotor_sketch

@@ -147,7 +147,7 @@ def test_a_picture_that_cannot_be_drawn_leaves_run_document_and_code(
     def broken(_: Run) -> None:
         raise RuntimeError("no font\nat all")
 
-    monkeypatch.setattr("frbcli.plot.run.summary.summary_figure", broken)
+    monkeypatch.setattr("frbcli.plot.summary.summary_figure", broken)
     assert frb(["runup", *QUICK, "-o", "run.h5", "--json"]) == 0
     said = capsys.readouterr()
     assert json.loads(said.out)["status"] == "finished"

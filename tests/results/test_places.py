@@ -22,9 +22,9 @@ from synthetic_run import Rotor, parser_error, signals
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.reading.shipped import find_shipped
-from frbcli.cli.files import here
 from frbcli.cli.main import COMMANDS
 from frbcli.cli.main import run as frb
+from frbcli.cli.options import here
 from frbcli.errors import InputError
 from frbcli.plot.moving import animate_orbits
 from frbcli.results.container import locked
@@ -65,7 +65,7 @@ def nothing_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(March, "__init__", fail)
     for place in ("linear.stability.stability", "linear.sheets.bearing.bearing_sheet", "linear.response.response",
                   "cycles.limit_cycles.limit_cycles", "studies.fit.fit", "studies.accuracy.accuracy",
-                  "studies.sweep.sweep.sweep", "bearing_tests.kinematic._test"):  # fmt: skip
+                  "studies.sweep.sweep", "bearing_tests.kinematic._test"):  # fmt: skip
         monkeypatch.setattr(f"frbcli.{place}", fail)
 
 

@@ -14,7 +14,7 @@ import frbcli
 from frbcli.case.schema import Case
 from frbcli.elements.pin import pin_torque
 from frbcli.errors import FrbError, InputError
-from frbcli.plot.run.quantities import quantity_figure
+from frbcli.plot.motion import quantity_figure
 from frbcli.rotor.loads import speed_profile
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import BEARING, SPEED_CYCLES, STABILITY

@@ -11,7 +11,7 @@ import pytest
 import frbcli
 from frbcli.errors import InputError, RunFileError
 from frbcli.linear.sheets.bearing import bearing_sheet
-from frbcli.plot.run.quantities import quantity_figure
+from frbcli.plot.motion import quantity_figure
 from frbcli.results.store import Run
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan

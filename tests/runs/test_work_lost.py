@@ -28,7 +28,7 @@ from frbcli.runs.run import runup
 from frbcli.studies import accuracy as ladder
 from frbcli.studies.accuracy import verify
 from frbcli.studies.compare import compare
-from frbcli.studies.sweep.sweep import Workers, sweep
+from frbcli.studies.sweep import Workers, sweep
 from frbcli.thermal.exchange import HOT
 
 QUICK = ["jeffcott", *SHORT]
@@ -195,7 +195,7 @@ def test_models_of_a_test_that_are_done_are_printed(
 
 
 def test_an_interrupted_point_ends_a_sweep_in_this_process(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr("frbcli.studies.sweep.sweep._compile", lambda _: None)
+    monkeypatch.setattr("frbcli.studies.sweep._compile", lambda _: None)
     chunk = March.chunk
     monkeypatch.setattr(March, "chunk", lambda march: (ask_to_end(), chunk(march))[1])
     found = sweep(load_case("jeffcott", SETTINGS), {"rotor.unbalance": ["1 g*mm", "2 g*mm", "3 g*mm"]}, tmp_path / "s",

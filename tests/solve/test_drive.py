@@ -11,7 +11,7 @@ from scipy.integrate import cumulative_simpson, solve_ivp
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict
-from frbcli.cli.runs.transient import exit_code
+from frbcli.cli.transient import exit_code
 from frbcli.elements.collar import collar_of
 from frbcli.elements.spring import STICKS
 from frbcli.errors import InputError

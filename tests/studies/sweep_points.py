@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from frbcli.studies.sweep.sweep import Workers
+from frbcli.studies.sweep import Workers
 
 SHORT = ["film.theory=short", "speed.duration=0.3 s", "speed.to=250 Hz"]
 VISCOSITIES = ["8 mPa*s", "12 mPa*s"]

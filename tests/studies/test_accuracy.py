@@ -19,8 +19,7 @@ from frbcli.results.store import Run
 from frbcli.runs.run import runup
 from frbcli.scene.planning.plan import make_plan
 from frbcli.studies import accuracy as accuracy_module
-from frbcli.studies.accuracy import accuracy, ladder, planned_rung
-from frbcli.studies.ladder import AccuracyLadder, Rung, RungError, RungResult
+from frbcli.studies.accuracy import AccuracyLadder, Rung, RungError, RungResult, accuracy, ladder, planned_rung
 
 QUICK = ("speed.duration=0.4 s", "speed.from=20 Hz", "speed.to=60 Hz", "output.step=2e-4 s", "accuracy.mesh=[4, 48]")
 UNTIL = 0.1

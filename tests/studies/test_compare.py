@@ -17,7 +17,7 @@ from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
 from frbcli.film.cavitation.table import names
-from frbcli.plot.compare import comparison_figure
+from frbcli.plot.studies import comparison_figure
 from frbcli.results.store import Run, read_run
 from frbcli.runs import march
 from frbcli.runs.march import Progress

@@ -21,7 +21,7 @@ from frbcli.case.reading.listing import machine_fault, values
 from frbcli.cli.main import frb
 from frbcli.cycles.stability_map import Across
 from frbcli.errors import InputError
-from frbcli.plot.compare import against_figure, fit_figure
+from frbcli.plot.studies import against_figure, fit_figure
 from frbcli.results.store import Run
 from frbcli.studies.against import against_measured
 from frbcli.studies.fit import Fit, fit

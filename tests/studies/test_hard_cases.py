@@ -12,8 +12,8 @@ import pytest
 from studies.hard_runs.cases import Reference, hard_case_result, references, run_hard_cases
 from studies.hard_runs.worker import DIED, HUNG, Worker
 
-from frbcli.case.reading.hard import HardCase, hard_cases
 from frbcli.case.reading.load import load_case_text
+from frbcli.case.reading.shipped import HardCase, hard_cases
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
 

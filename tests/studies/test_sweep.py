@@ -17,10 +17,10 @@ from frbcli import Case, InputError, load_case, read_run, runup, stability, swee
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.linear.stability import open_spans, threshold_alone
 from frbcli.linear.stability_point import find_threshold, point_at_rest
-from frbcli.studies.sweep import sweep as study
-from frbcli.studies.sweep.points import grid, product, read_list, split_values
-from frbcli.studies.sweep.sweep import LOG, SweepPoint, Workers
-from frbcli.studies.sweep.workers import DIED, Task, solve, solved
+from frbcli.studies import sweep as study
+from frbcli.studies.sweep import LOG, SweepPoint, Workers
+from frbcli.studies.sweep_points import grid, product, read_list, split_values
+from frbcli.studies.sweep_workers import DIED, Task, solve, solved
 
 
 @pytest.fixture(scope="module")
@@ -371,7 +371,7 @@ def test_a_cluster_that_is_not_there_is_wrong_input(
     case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("distributed")
-    monkeypatch.setattr("frbcli.studies.sweep.workers.CONNECT_WITHIN_s", 0.5)
+    monkeypatch.setattr("frbcli.studies.sweep_workers.CONNECT_WITHIN_s", 0.5)
     with pytest.raises(InputError, match="cannot be reached"):
         sweep(case, {"oil.viscosity": VISCOSITIES}, tmp_path, workers=Workers("dask", scheduler="tcp://127.0.0.1:9"))
 

@@ -16,8 +16,8 @@ from sweep_points import CLEARANCES, SHORT, TWO, VISCOSITIES
 
 from frbcli import Case, InputError, load_case, sweep
 from frbcli.cli.main import run as frb
-from frbcli.plot.sweep import can_draw, sweep_figure
-from frbcli.studies.sweep.sweep import write_table
+from frbcli.plot.studies import can_draw, sweep_figure
+from frbcli.studies.sweep import write_table
 
 
 @pytest.fixture(scope="module")

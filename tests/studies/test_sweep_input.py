@@ -13,10 +13,9 @@ from scipy.stats import norm, truncnorm
 
 from frbcli import InputError, load_case
 from frbcli.cli.main import run as frb
-from frbcli.studies.sweep.points import linked, read_correlation, read_distribution, read_values, samples
-from frbcli.studies.sweep.scatter import _wilson, scatter, whirl_speed
-from frbcli.studies.sweep.sweep import Sweep, SweepPoint, Workers, sweep
-from frbcli.studies.sweep.workers import NO_WHIRL
+from frbcli.studies.sweep import Sweep, SweepPoint, Workers, _wilson, scatter, sweep, whirl_speed
+from frbcli.studies.sweep_points import linked, read_correlation, read_distribution, read_values, samples
+from frbcli.studies.sweep_workers import NO_WHIRL
 
 SHORT = "film.theory=short"
 

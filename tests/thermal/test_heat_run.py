@@ -17,7 +17,7 @@ from frbcli.cli.main import run as frb
 from frbcli.equilibrium.static_machine import warm_machine
 from frbcli.errors import NotConverged
 from frbcli.materials import OILS
-from frbcli.plot.run.quantities import quantity_figure
+from frbcli.plot.motion import quantity_figure
 from frbcli.results.store import Run
 from frbcli.runs.march import March
 from frbcli.runs.run import runup

@@ -9,16 +9,15 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from frbcli.case.files.coefficient_files import with_coefficient_files
 from frbcli.case.model import Model
 from frbcli.case.oil import with_grade
 from frbcli.case.over_time import machine_breaches
-from frbcli.case.reading.coefficient_files import with_housing_file
+from frbcli.case.reading.files import with_coefficient_files, with_housing_file
 from frbcli.case.reading.ross import with_rotor_file
 from frbcli.case.reading.settings import DEEPEST, TomlFault, as_tables, parse, to_toml, with_setting, with_value
 from frbcli.case.reading.shipped import find_shipped, nearest, shipped_names
 from frbcli.case.reading.tables import Path as KeyPath
-from frbcli.case.reading.tables import at, key_lines
+from frbcli.case.reading.tables import at, has_table, key_lines
 from frbcli.case.reading.time_tables import with_input_files, with_speed_points, with_time_tables
 from frbcli.case.rules.checks import Breach, breaches
 from frbcli.case.rules.faults import MISSING, UNKNOWN, objections, with_nearest_kinds
@@ -188,13 +187,13 @@ def describes(text: str, case: Case) -> bool:
 
 def _checked(data: dict[str, Any], name: str, folder: str | Path) -> tuple[Case | None, dict[str, Any], list[Breach]]:
     """The case in `data`, None if there is none; its tables, with name and rotor file; all faults."""
-    data = data if "name" in data else {"name": _printable(name), **data}
-    data, unread = with_rotor_file(data, Path(folder))
-    data, unknown = with_coefficient_files(data, Path(folder))
-    data, unfit = with_time_tables(data, Path(folder))
-    data, no_modes = with_housing_file(data, Path(folder))
-    data, wrong = with_speed_points(data, Path(folder))
-    data, unread_inputs = with_input_files(data, Path(folder))
+    data, folder = data if "name" in data else {"name": _printable(name), **data}, Path(folder)
+    data, unread = with_rotor_file(data, folder)
+    data, unknown = with_coefficient_files(data, folder)
+    data, unfit = with_time_tables(data, folder)
+    data, no_modes = with_housing_file(data, folder)
+    data, wrong = with_speed_points(data, folder)
+    data, unread_inputs = with_input_files(data, folder)
     unfit += [*wrong, *unread_inputs, *no_modes]
     case, flaws = _validate(data)
     files = {breach.path[:-1] for breach in unread_inputs}
@@ -272,8 +271,8 @@ def _apply(data: dict[str, Any], settings: Iterable[_Set]) -> tuple[dict[str, An
 
 def _validate(data: dict[str, Any]) -> tuple[Case | None, list[Breach]]:
     """The case in `data`, None if the models reject it, and all faults."""
-    if isinstance(oil := data.get("oil"), dict):
-        data = {**data, "oil": with_grade(oil)}
+    if has_table(data, "oil"):
+        data = {**data, "oil": with_grade(data["oil"])}
     case, guess = None, data
     guessed: list[KeyPath] = []
     faults: dict[KeyPath, Breach] = {}  # one per key: the first says why the value cannot be taken at all

@@ -78,40 +78,25 @@ def to_toml(data: Mapping[str, Any]) -> str:
 
 
 def _table(data: Mapping[str, Any], path: tuple[str, ...]) -> list[str]:
-    lines = [f"{_key(key)} = {_inline(value)}" for key, value in data.items() if not _is_table(value)]
+    plain, tables = list[str](), list[str]()
     for key, value in data.items():
-        if not _is_table(value):
-            continue
-        inner = (*path, _key(key))
-        many = isinstance(value, list)
-        for table in value if many else [value]:
-            header = f"[[{'.'.join(inner)}]]" if many else f"[{'.'.join(inner)}]"
-            lines += ["", header, *_table(table, inner)]
-    return lines
-
-
-def _is_table(value: Any) -> bool:
-    tables = isinstance(value, list) and bool(value) and all(isinstance(item, dict) for item in value)
-    return isinstance(value, dict) or tables
-
-
-def _key(key: str) -> str:
-    return key if _BARE.fullmatch(key) else _text(key)
+        name = key if _BARE.fullmatch(key) else _inline(key)
+        inner = (*path, name)
+        if isinstance(value, dict):
+            tables += ["", f"[{'.'.join(inner)}]", *_table(value, inner)]
+        elif isinstance(value, list) and value and all(isinstance(item, dict) for item in value):
+            tables += [line for item in value for line in ("", f"[[{'.'.join(inner)}]]", *_table(item, inner))]
+        else:
+            plain.append(f"{name} = {_inline(value)}")
+    return plain + tables
 
 
 def _inline(value: Any) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        return _text(value)
+    """JSON's texts and words are TOML's, but for DEL, which TOML wants escaped."""
     if isinstance(value, list):
-        return f"[{', '.join(_inline(item) for item in value)}]"
-    return repr(value)
-
-
-def _text(text: str) -> str:
-    """JSON's escapes are TOML's, but for DEL, which TOML wants escaped."""
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+        return f"[{', '.join(map(_inline, value))}]"
+    written = repr(value) if isinstance(value, float) else json.dumps(value, ensure_ascii=False)
+    return written.replace("\x7f", "\\u007f")
 
 
 def as_text(case: Model, name: str, bearing_names: Sequence[str]) -> str:
@@ -240,13 +225,13 @@ def _insert(table: dict[str, Any], parts: list[str], value: Any, above: Path) ->
 
 def _insert_among(items: list[Any], rest: list[str], value: Any, path: Path) -> Path:
     """Set a value within a list: in one of its tables or in all, or one of its values, as of a pair [x, y]."""
-    if rest[0] == ALL and len(rest) > 1 and items and all(isinstance(one, dict) for one in items):
+    if not all(isinstance(one, dict) for one in items):
+        return _insert_value(items, rest, value, path)
+    if rest[0] == ALL and len(rest) > 1 and items:
         for number, one in enumerate(items):
             items[number] = dict(one)
             _insert(items[number], rest[1:], value, (*path, number))
         return path
-    if any(not isinstance(one, dict) for one in items):
-        return _insert_value(items, rest, value, path)
     index = _index(items, rest, path)
     items[index] = dict(items[index])
     return _insert(items[index], rest[1:], value, (*path, index))
@@ -268,14 +253,12 @@ def _insert_value(items: list[Any], rest: list[str], value: Any, path: Path) -> 
     return (*path, number)
 
 
-def _index(tables: list[Any], rest: list[str], path: Path) -> int:
+def _index(tables: list[dict[str, Any]], rest: list[str], path: Path) -> int:
     """The index that leads into an array of tables, and is followed by a key."""
     if len(rest) > 1 and _INDEX.fullmatch(rest[0]) and int(rest[0]) < len(tables):
-        index = int(rest[0])
-        if isinstance(tables[index], dict):
-            return index
+        return int(rest[0])
     whole = ".".join(map(str, path))
-    names = [str(table["name"]) for table in tables if isinstance(table, dict) and "name" in table]
+    names = [str(table["name"]) for table in tables if "name" in table]
     if len(rest) > 1 and names.count(rest[0]) == 1 and len(names) == len(tables):
         return names.index(rest[0])
     problem = f"does not say which of the {len(tables)} tables of {whole} is meant."

@@ -171,19 +171,35 @@ class Breach:
     remedy: str
 
 
-def tables(data: Mapping[str, Any], key: str) -> list[tuple[Path, dict[str, Any]]]:
-    """The tables of [key] or [[key]] with their paths."""
-    entry = data.get(key)
-    if isinstance(entry, dict):
-        return [((key,), entry)]
-    many = enumerate(entry) if isinstance(entry, list) else ()
-    return [((key, index), item) for index, item in many if isinstance(item, dict)]
+def has_table(data: Mapping[str, Any], key: str) -> bool:
+    """Whether a key is a table."""
+    return isinstance(data.get(key), dict)
 
 
 def table(data: Mapping[str, Any], key: str) -> dict[str, Any]:
     """The table [key], empty if there is none."""
+    return data[key] if has_table(data, key) else {}
+
+
+def listed(data: Mapping[str, Any], key: str) -> list[Any]:
+    """The entries of a list, none if a key is no list."""
     entry = data.get(key)
-    return entry if isinstance(entry, dict) else {}
+    return list(entry) if isinstance(entry, list | tuple) else []
+
+
+def pairs(given: object) -> tuple[list[Any], list[Any]] | None:
+    """The two columns of a list of pairs, None of anything else."""
+    rows: Any = given if isinstance(given, list | tuple) else [given]
+    if any(not isinstance(row, list | tuple) or len(row) != 2 for row in rows):
+        return None
+    return [row[0] for row in rows], [row[1] for row in rows]
+
+
+def tables(data: Mapping[str, Any], key: str) -> list[tuple[Path, dict[str, Any]]]:
+    """The tables of [key] or [[key]] with their paths."""
+    if has_table(data, key):
+        return [((key,), data[key])]
+    return [((key, index), item) for index, item in enumerate(listed(data, key)) if isinstance(item, dict)]
 
 
 def at(data: Any, path: Path) -> Any:
@@ -220,9 +236,12 @@ def ring_films(bearing: Mapping[str, Any]) -> list[tuple[Located, Located]]:
 
 def number(values: Mapping[str, Any], key: str, unit: str, default: float | None = None) -> float | None:
     """The SI value of a key; `default` where it is absent, None where it cannot be read."""
-    if key not in values:
-        return default
+    return as_number(values[key], unit) if key in values else default
+
+
+def as_number(given: object, unit: str) -> float | None:
+    """The SI value of a quantity as it is written, None where it cannot be read."""
     try:
-        return quantity(values[key], unit)
+        return quantity(given, unit)
     except ValueFault:
         return None

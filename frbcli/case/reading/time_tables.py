@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING, Any
 from frbcli.arrays import Array
 from frbcli.case.model import SMALLEST, Model, unit_of
 from frbcli.case.over_time import OverTime
-from frbcli.case.reading.coefficient_files import Refused, with_file
-from frbcli.case.reading.tables import Breach, table, tables
+from frbcli.case.reading.files import Refused, with_file
+from frbcli.case.reading.tables import Breach, pairs, table, tables
 from frbcli.case.reading.tables import Path as Key
 from frbcli.errors import InputError
 from frbcli.units import SPEED, ValueFault, quantity
 
 if TYPE_CHECKING:
-    from frbcli.results.measured.columns import Columns
+    from frbcli.results.measured_columns import Columns
 
 
 MOST_NUMBERS = 60_000  # of all tables of a case, whose text a run file holds
@@ -74,7 +74,7 @@ def with_time_tables(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any]
 
 def read_table(path: Path, wanted: TableKind, most: int = MOST_NUMBERS) -> dict[str, list[float]]:
     """The columns time, x and, where there are two, y of a file, in SI. Raises Refused."""
-    from frbcli.results.measured.reading import read_columns
+    from frbcli.results.measured import read_columns
 
     try:
         columns = read_columns(path)
@@ -101,7 +101,7 @@ def read_tacho(path: Path, name: str, pulses: int) -> dict[str, list[float]]:
     import numpy as np
 
     from frbcli.analysis.order_tracking import tacho_speed
-    from frbcli.results.measured.reading import read_columns
+    from frbcli.results.measured import read_columns
 
     if not isinstance(pulses, int) or pulses < 1:
         raise Refused(f"has {pulses} pulses per revolution.", "Write e.g. pulses = 1.")
@@ -125,7 +125,7 @@ def read_tacho(path: Path, name: str, pulses: int) -> dict[str, list[float]]:
 
 def _plain(columns: Columns) -> Iterator[tuple[str, str]]:
     """The names of the columns: as people write them, in small letters and without unit, and as in the file."""
-    from frbcli.results.measured.delimited import without_unit
+    from frbcli.results.delimited import without_unit
 
     for name in columns.values:
         plain = without_unit(name).strip().lower()
@@ -291,8 +291,8 @@ def with_speed_points(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any
 
     folder: that a relative path counts from.
     """
-    speed = data.get("speed")
-    if not isinstance(speed, dict) or not {"points", "file", GIVEN_TIMES, SPEEDS} & speed.keys():
+    speed = table(data, "speed")
+    if not {"points", "file", GIVEN_TIMES, SPEEDS} & speed.keys():
         return data, []
     given = [key for key in ("points", "file", GIVEN_TIMES) if key in speed]
     if len(given) > 1:
@@ -330,10 +330,10 @@ def _written(speed: dict[str, Any], folder: Path) -> tuple[Any, Any]:
         return columns["time"], columns["x"]
     if GIVEN_TIMES in speed or SPEEDS in speed:
         return speed.get(GIVEN_TIMES), speed.get(SPEEDS)
-    points = speed.get("points")
-    if not isinstance(points, list) or any(not isinstance(each, list) or len(each) != 2 for each in points):
+    points = pairs(speed.get("points"))
+    if points is None:
         raise Refused("is no list of times with speeds, nor the name of a file.", REMEDY)
-    return [time for time, _ in points], [value for _, value in points]
+    return points
 
 
 def _column(given: object, unit: str) -> list[float]:

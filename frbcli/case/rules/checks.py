@@ -15,7 +15,19 @@ from typing import Any
 
 from frbcli.case.model import LARGEST
 from frbcli.case.oil import ATMOSPHERE
-from frbcli.case.reading.tables import Breach, Located, Path, at, number, ring_films, table, tables
+from frbcli.case.reading.tables import (
+    Breach,
+    Located,
+    Path,
+    as_number,
+    at,
+    has_table,
+    listed,
+    number,
+    ring_films,
+    table,
+    tables,
+)
 from frbcli.case.rotor import OF_SECTIONS, SYMMETRIC
 from frbcli.case.rules.element_checks import (
     balls_alone,
@@ -31,6 +43,7 @@ from frbcli.case.rules.element_checks import (
 from frbcli.case.rules.film_checks import (
     contact_breaches,
     film_breaches,
+    is_constant,
     law_breaches,
     thermal_breaches,
     warm_clearance,
@@ -70,8 +83,7 @@ class _Speed:
 
 def implausible(data: Mapping[str, Any]) -> Iterator[Breach]:
     """Every implausible value of the tables of a case that is not confirmed."""
-    given = data.get("confirm")
-    confirmed = given if isinstance(given, list) else []
+    confirmed = listed(data, "confirm")
     doubts: dict[Path, list[_Doubt]] = {}
     for doubt in _doubts(data):
         if doubt.name not in confirmed:
@@ -207,10 +219,10 @@ def breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
 
 
 def _oil(data: Mapping[str, Any]) -> Iterator[Breach]:
-    oil = data.get("oil")
-    if not isinstance(oil, dict):
+    if not has_table(data, "oil"):
         return
-    constant = "viscosity" in oil and not isinstance(oil["viscosity"], dict) and "vogel" not in oil
+    oil = data["oil"]
+    constant = is_constant(oil)
     if "viscosity" in oil and "vogel" in oil:
         yield Breach(("oil", "vogel"), "gives the viscosity a second time.", "Keep viscosity or vogel.")
     if "viscosity" not in oil and "vogel" not in oil:
@@ -218,11 +230,12 @@ def _oil(data: Mapping[str, Any]) -> Iterator[Breach]:
     elif not constant and "temperature" not in oil and "thermal" not in data:
         needs = "Vogel's law needs it" if "vogel" in oil else "the viscosity of a grade or of points needs it"
         yield Breach(("oil", "temperature"), f"is missing; {needs}.", 'Add e.g. temperature = "100 degC".')
-    points = table(oil, "viscosity").get("points")
-    if "density" not in oil and points is not None:
+    viscosity = table(oil, "viscosity")
+    if "density" not in oil and viscosity.get("points") is not None:
         problem = "is missing; a kinematic viscosity needs it."
         yield Breach(("oil", "density"), problem, 'Add e.g. density = "850 kg/m^3".')
-    if isinstance(points, list) and len({str(point[:1]) for point in points if isinstance(point, list)}) < len(points):
+    points = [point for point in listed(viscosity, "points") if isinstance(point, list)]
+    if len({str(point[:1]) for point in points}) < len(points):
         yield Breach(("oil", "viscosity", "points"), "has one temperature twice.", "Give two temperatures.")
     for key in ("temperature", "shear_factor"):
         if key in oil and constant:
@@ -241,16 +254,16 @@ def _ring(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
         if inner and outer and inner >= outer:
             problem = f"is {display(inner, 'm')}, not below the outer film's, {display(outer, 'm')}."
             yield Breach((*path, *film, "diameter"), problem, "Exchange inner and outer, or correct the diameters.")
-    ring = bearing.get("ring")
+    ring = table(bearing, "ring")
     yield from pin_breaches(path, bearing)
     if bearing.get("kind") == "cartridge":
         yield from cartridge_breaches(path, bearing)
         return
     yield from tilt_breaches(path, bearing)
-    if isinstance(ring, dict) and not {"mass", "material"} & ring.keys():
+    if has_table(bearing, "ring") and not {"mass", "material"} & ring.keys():
         remedy = 'Add e.g. mass = "30 g", or material = "brass", from which it follows.'
         yield Breach((*path, "ring", "mass"), "is missing.", remedy)
-    if isinstance(ring, dict) and {"mass", "width"} <= ring.keys():
+    if {"mass", "width"} <= ring.keys():
         yield Breach((*path, "ring", "width"), "has no effect: the mass is given.", "Remove one of the two.")
 
 
@@ -264,12 +277,12 @@ def _damper(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
 
 
 def _names(what: str, named: list[tuple[Path, dict[str, Any]]]) -> Iterator[Breach]:
-    seen: set[str] = set()
+    seen: list[object] = []
     for place, (path, part) in enumerate(named, start=1):
         name = part.get("name", str(place))
-        if isinstance(name, str) and name in seen:
+        if name in seen:
             yield Breach((*path, "name"), f"is also the name of another {what}.", f"Give each {what} its own name.")
-        seen.add(str(name) if isinstance(name, str) else "")
+        seen.append(name)
 
 
 def _rotor(data: Mapping[str, Any], bearings: list[tuple[Path, dict[str, Any]]]) -> Iterator[Breach]:
@@ -325,9 +338,9 @@ def _on_shaft(data: Mapping[str, Any], bearings: list[tuple[Path, dict[str, Any]
 
 def _run(data: Mapping[str, Any]) -> Iterator[Breach]:
     start, speed = table(data, "start"), table(data, "drive" if "drive" in data else "speed")
-    displacement = start.get("displacement")
-    if isinstance(displacement, list) and len(displacement) == 2:
-        x, y = (number({"": item}, "", NUMBER) for item in displacement)
+    displacement = [as_number(each, NUMBER) for each in listed(start, "displacement")]
+    if len(displacement) == 2:
+        x, y = displacement
         if x is not None and y is not None and math.hypot(x, y) >= 1:
             yield Breach(("start", "displacement"), "is outside the clearance.", "Its length must be below 1.")
     if "displacement" in start and "position" in start:
@@ -371,5 +384,5 @@ def _films(path: Path, bearing: dict[str, Any]) -> Iterator[tuple[Path, dict[str
         yield path, bearing
     for end in ring_films(bearing):
         yield from (((*path, *at), film) for at, film in end)
-    if isinstance(bearing.get("damper"), dict):
-        yield (*path, "damper"), table(bearing, "damper")
+    if has_table(bearing, "damper"):
+        yield (*path, "damper"), bearing["damper"]

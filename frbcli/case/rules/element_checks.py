@@ -10,10 +10,20 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from frbcli.case.elements import EMPTY_MATRIX, OPPOSED, WITHOUT_FILM, BallBearingKeys
-from frbcli.case.files.coefficient_files import MASSES, column_lengths, is_negative, over_speed_problem
+from frbcli.case.elements import OPPOSED, WITHOUT_FILM, BallBearingKeys
 from frbcli.case.over_time import values_of
-from frbcli.case.reading.tables import Breach, Path, number, ring_films, table, tables
+from frbcli.case.reading.files import MASSES, column_lengths, is_negative, over_speed_problem
+from frbcli.case.reading.tables import (
+    Breach,
+    Path,
+    as_number,
+    has_table,
+    listed,
+    number,
+    ring_films,
+    table,
+    tables,
+)
 from frbcli.case.rotor import OF_SECTIONS
 from frbcli.units import ANGLE, NUMBER, SPEED, display
 
@@ -48,7 +58,8 @@ def element_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
             yield from _locating((*path, "locating"), bearing, data)
             yield from _row_distance((*path, "row_distance"), bearing, data)
         for body in ("damper", "support"):
-            yield from _body((*path, body), bearing.get(body), data)
+            if has_table(bearing, body):
+                yield from _body((*path, body), bearing[body], data)
     if has_films(data):
         return
     for place in OF_FILMS:
@@ -59,10 +70,8 @@ def element_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
         yield Breach(("motion",), "moves a journal in a film, and no bearing of the case has a film.", REMEDY)
 
 
-def _body(path: Path, given: object, data: Mapping[str, Any]) -> Iterator[Breach]:
+def _body(path: Path, given: Mapping[str, Any], data: Mapping[str, Any]) -> Iterator[Breach]:
     """What is wrong with the body of a damper or a support."""
-    if not isinstance(given, dict):
-        return
     if "rotor" not in data:
         problem = "has no effect: a kinematic test moves the journal against its shell."
         yield Breach(path, problem, "Remove it, or add [rotor] and [speed].")
@@ -101,8 +110,8 @@ def _balls(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
         problem = "has no effect without f0." if "viscosity" in friction else "is missing; the friction by f0 needs it."
         yield Breach((*path, "friction", "viscosity"), problem, 'Give both, e.g. f0 = 1, viscosity = "20 mm^2/s".')
     ball, pitch = (number(bearing, key, "m") for key in ("ball_diameter", "pitch_diameter"))
-    balls = bearing.get("balls")
-    if ball is None or pitch is None or not isinstance(balls, int) or balls < 3:
+    balls = _count(bearing, "balls", MOST_BALLS)
+    if ball is None or pitch is None or balls < 3:
         return
     if pitch * math.sin(math.pi / balls) <= ball:
         least = ball / math.sin(math.pi / balls)
@@ -133,9 +142,7 @@ def _row_distance(path: Path, bearing: Mapping[str, Any], data: Mapping[str, Any
 
 def _preload(path: Path, bearing: Mapping[str, Any], angle: bool) -> Iterator[Breach]:
     """Rings with a contact angle hold together under a preload alone."""
-    given = bearing.get("preload")
-    none = given is None or (not isinstance(given, dict) and number(bearing, "preload", "N") == 0.0)
-    if none and angle:
+    if angle and (bearing.get("preload") is None or number(bearing, "preload", "N") == 0.0):
         problem = "is missing: without it the rings of an angular contact bearing part under a radial load."
         yield Breach((*path, "preload"), problem, 'Write e.g. preload = "50 N", or { offset = "5 um" }.')
 
@@ -152,19 +159,19 @@ def _locating(path: Path, bearing: Mapping[str, Any], data: Mapping[str, Any]) -
     if "rotor" in data and table(data, "rotor").get("kind") not in OF_SECTIONS:
         problem = "is of a symmetric rotor, whose two bearings are equal, and one of them carries the axial load."
         yield Breach(path, problem, 'Write rotor.kind = "turbocharger" with [[shaft]] sections and both bearings.')
-    if values_of(table(data, "axial").get("load"), "N") and isinstance(table(data, "axial").get("load"), list):
+    axial = table(data, "axial")
+    if listed(axial, "load") and values_of(axial["load"], "N"):
         problem = "changes over time, and a ball bearing has one axial load for each speed."
         yield Breach(("axial", "load"), problem, 'Give one load, or { at = "1000 Hz", load = "40 N" }.')
 
 
 def _matrix(given: object) -> tuple[float, ...] | None:
     """The entries of a mass matrix, None if it cannot be read; one quantity holds for both directions."""
-    if given is None:
-        return tuple(entry for row in EMPTY_MATRIX for entry in row)
-    if isinstance(given, list | tuple) and len(given) == 2 and all(isinstance(r, list | tuple) for r in given):
-        entries = [number({"": entry}, "", "kg") for row in given for entry in row]
+    if isinstance(given, list | tuple):
+        entries = [as_number(entry, "kg") for row in given if isinstance(row, list | tuple) for entry in row]
     else:
-        entries = [number({"": given}, "", "kg"), 0.0, 0.0, number({"": given}, "", "kg")]
+        one = 0.0 if given is None else as_number(given, "kg")
+        entries = [one, 0.0, 0.0, one]
     known = tuple(entry for entry in entries if entry is not None)
     return known if len(known) == len(entries) == 4 else None
 
@@ -183,8 +190,8 @@ def _over_speed(path: Path, values: Mapping[str, Any]) -> Iterator[Breach]:
         yield Breach((*path, missing), "is missing, while other masses are given.", "Give all four of them.")
     if len(set(lengths.values())) != 1:
         return
-    speeds = [number({"": value}, "", "Hz") for value in values.get("speed", [])]
-    masses = [[number({"": value}, "", "kg") for value in values[name]] for name in given]
+    speeds = [as_number(value, "Hz") for value in values.get("speed", [])]
+    masses = [[as_number(value, "kg") for value in values[name]] for name in given]
     if None in speeds or any(None in column for column in masses) or len(given) not in (0, len(MASSES)):
         return
     problem = over_speed_problem([s or 0.0 for s in speeds], [[m or 0.0 for m in column] for column in masses])
@@ -198,7 +205,7 @@ BODY = {"mass": "9 g", "inertia": "0.2 kg*mm^2", "tilt_inertia": "1 kg*mm^2"}
 def cartridge_breaches(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
     """Every broken rule of a cartridge."""
     ring = table(bearing, "ring")
-    for key, example in BODY.items() if isinstance(bearing.get("ring"), dict) else ():
+    for key, example in BODY.items() if has_table(bearing, "ring") else ():
         if key not in ring:
             problem = "is missing: the body of a cartridge does not follow from its films."
             yield Breach((*path, "ring", key), problem, f'Add e.g. {key} = "{example}".')
@@ -237,12 +244,11 @@ def pin_breaches(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
 
 def positions(path: Path, bearing: Mapping[str, Any]) -> list[tuple[Path, float | None]]:
     """The places of a cartridge in m with their paths, None for one that cannot be read."""
-    given = bearing.get("positions")
-    items = given if isinstance(given, list) else []
-    return [((*path, "positions", index), number({"": item}, "", "m")) for index, item in enumerate(items)]
+    given = listed(bearing, "positions")
+    return [((*path, "positions", index), as_number(item, "m")) for index, item in enumerate(given)]
 
 
-MOST_PADS = 10**6
+MOST_PADS, MOST_BALLS = 10**6, 10**6
 ROUND = 1e-9
 FEWEST = 3  # pads of a collar under load
 ONE_SIDE = ("left", "right")
@@ -273,9 +279,7 @@ def _pads(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
         problem = f"is {display(inner, 'm')}, not below the outer radius of {display(outer, 'm')}."
         yield Breach((*path, "inner_radius"), problem, "Exchange the two radii, or correct them.")
     angle, taper_angle = (number(bearing, key, ANGLE) for key in ("pad_angle", "taper_angle"))
-    pads = bearing.get("pads")
-    if not isinstance(pads, int) or isinstance(pads, bool) or pads > MOST_PADS:  # has a fault of its own
-        pads = 0
+    pads = _count(bearing, "pads", MOST_PADS)
     if angle and pads * angle > 2.0 * math.pi * (1.0 + ROUND):
         degrees = math.degrees(angle)
         problem = f"makes the pads overlap: {pads} of {degrees:.5g} deg are {pads * degrees:.5g} deg."
@@ -284,6 +288,12 @@ def _pads(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
     if angle and taper_angle and taper_angle > angle * (1.0 + ROUND):
         problem = f"is {math.degrees(taper_angle):.5g} deg, longer than the pad of {math.degrees(angle):.5g} deg."
         yield Breach((*path, "taper_angle"), problem, "Make it shorter, at most as long as pad_angle.")
+
+
+def _count(values: Mapping[str, Any], key: str, most: int) -> int:
+    """A whole number up to `most`; 0 for anything else, which has a fault of its own."""
+    given = values.get(key)
+    return given if type(given) is int and given <= most else 0
 
 
 def _loaded(data: Mapping[str, Any]) -> Iterator[Breach]:
@@ -309,8 +319,8 @@ def _loaded(data: Mapping[str, Any]) -> Iterator[Breach]:
         problem = "turns the collar the other way, in which its pads carry nothing."
         yield Breach(("speed", "from"), problem, 'Write from = "0 Hz" or more, or remove [axial].')
     path, bearing = bearings[0]
-    pads = bearing.get("pads")
-    if isinstance(pads, int) and not isinstance(pads, bool) and 0 < pads < FEWEST:
+    pads = _count(bearing, "pads", MOST_PADS)
+    if 0 < pads < FEWEST:
         problem = f"is {pads}: fewer than three pads do not hold a collar alike in all directions."
         yield Breach((*path, "pads"), problem, "Write pads = 3 or more, or remove [axial].")
     yield from _side(key, table(data, "axial").get("load"), bearing.get("side", "both"))
@@ -318,7 +328,7 @@ def _loaded(data: Mapping[str, Any]) -> Iterator[Breach]:
 
 def _side(key: Path, given: Any, side: object) -> Iterator[Breach]:
     """A load towards the side without pads."""
-    values = values_of(given.get("load") if isinstance(given, dict) and "load" in given else given, "N")
+    values = values_of(given.get("load", given) if isinstance(given, dict) else given, "N")
     if side not in ONE_SIDE or not values:
         return
     towards = min(values) if side == "right" else -max(values)

@@ -112,22 +112,21 @@ def _path(loc: Sequence[str | int], data: Any) -> Path:
     path: Path = ()
     kind_seen = False
     for element in loc:
-        if isinstance(element, str) and element.startswith("("):
+        if str(element).startswith("("):
             continue
         if isinstance(data, dict):
-            if isinstance(element, int) and path[-1:] in BY_PLACE and element < len(data):
-                path = (*path, list(data)[element])
-                data = data[path[-1]]
-                continue
             if isinstance(element, int):
+                if path[-1:] in BY_PLACE and element < len(data):
+                    path = (*path, list(data)[element])
+                    data = data[path[-1]]
                 continue
             if not kind_seen and element == data.get("kind"):
                 kind_seen = True
                 continue
-        if path[-2:-1] in BY_PLACE and isinstance(element, str) and not isinstance(data, dict):
-            continue  # the value itself, which a table by places has without its name
-        if isinstance(element, int) and isinstance(data, str | int | float):
+        elif isinstance(element, int) and isinstance(data, str | int | float):
             continue  # one quantity instead of a matrix
+        elif path[-2:-1] in BY_PLACE and isinstance(element, str):
+            continue  # the value itself, which a table by places has without its name
         path = (*path, element)
         kind_seen = False
         data = at(data, (element,))

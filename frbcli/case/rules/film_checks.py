@@ -12,9 +12,9 @@ from pydantic import TypeAdapter, ValidationError
 from frbcli.case.film import ColdClearance, Profile
 from frbcli.case.oil import ATMOSPHERE, HOTTEST_FILM, Grade, Oil, Vogel
 from frbcli.case.over_time import is_over_time, values_of
-from frbcli.case.reading.tables import Breach, Path, number, ring_films, table, tables
+from frbcli.case.reading.tables import Breach, Path, has_table, number, ring_films, table, tables
 from frbcli.case.supplies import supply_named
-from frbcli.materials import OILS, VogelLaw
+from frbcli.materials import VogelLaw
 from frbcli.units import NUMBER, display
 
 PROFILE: TypeAdapter[tuple[tuple[float, float], ...]] = TypeAdapter(Profile)
@@ -40,7 +40,7 @@ def film_breaches(path: Path, film: Mapping[str, Any], data: Mapping[str, Any]) 
     if "temperature" in film and "viscosity" in film:
         problem = "has no effect: the film has a viscosity of its own."
         yield Breach((*path, "temperature"), problem, "Keep one of the two.")
-    elif "temperature" in film and "vogel" not in oil and not isinstance(oil.get("viscosity"), dict):
+    elif "temperature" in film and "vogel" not in oil and not has_table(oil, "viscosity"):
         yield Breach((*path, "temperature"), "has no effect: [oil] has no Vogel's law.", "Add oil.vogel or remove it.")
     elif "temperature" in film:
         yield from law_breaches(oil, number(film, "temperature", "K"), (*path, "temperature"))
@@ -124,26 +124,29 @@ def law_breaches(oil: Mapping[str, Any], temperature: float | None, path: Path) 
         yield Breach(path, problem, "A grade has data from 40 to 150 degC, given points only near them.")
 
 
+def is_constant(oil: Mapping[str, Any]) -> bool:
+    """Whether the viscosity of the table [oil] is one for all temperatures."""
+    return "viscosity" in oil and not has_table(oil, "viscosity") and "vogel" not in oil
+
+
 def viscosity_law(oil: Mapping[str, Any]) -> VogelLaw | None:
     """Viscosity over temperature of the table [oil]; None without one, or where it cannot be read."""
     try:
         if "vogel" in oil:
-            return Vogel.model_validate(oil["vogel"]).law
-        given = oil.get("viscosity")
-        if isinstance(given, dict) and "points" in given:
+            return Vogel.model_validate(oil["vogel"]).law()
+        if "points" in table(oil, "viscosity"):
             return Oil.model_validate(oil).law
-        return OILS[Grade.model_validate(given).grade].law
+        return Grade.model_validate(oil.get("viscosity")).law()
     except ValidationError:
         return None
 
 
 def warm_clearance(film: Mapping[str, Any], diameter: float | None) -> float | None:
     """The warm radial clearance [m] of a film's table, None where it cannot be read."""
-    given = film.get("clearance")
-    if not isinstance(given, dict):
+    if not has_table(film, "clearance"):
         return number(film, "clearance", "m")
     try:
-        return ColdClearance.model_validate(given).warm(diameter) if diameter else None
+        return ColdClearance.model_validate(film["clearance"]).warm(diameter) if diameter else None
     except ValidationError:
         return None
 
@@ -157,7 +160,7 @@ def thermal_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
     if not thermal or thermal.get("model") == "none":
         yield from _without_heat(data)
         return
-    if "viscosity" in oil and not isinstance(oil["viscosity"], dict) and "vogel" not in oil:
+    if is_constant(oil):
         problem = "is constant, but [thermal] has films that warm up."
         remedy = 'Give a grade, { grade = "SAE 10W-40" }, or oil.vogel in its place.'
         yield Breach(("oil", "viscosity"), problem, remedy)
@@ -182,7 +185,7 @@ def _film(path: Path, film: Mapping[str, Any]) -> Iterator[Breach]:
     if "temperature" in film:
         problem = "has no effect: [thermal] finds the film's temperature."
         yield Breach((*path, "temperature"), problem, 'Remove it, or write thermal.model = "none".')
-    if "clearance_steps" in film and isinstance(film.get("clearance"), dict):
+    if "clearance_steps" in film and has_table(film, "clearance"):
         problem = "gives clearances of no temperature, and the clearance before them is a cold one."
         remedy = "Give that at thermal.reference_temperature as a length, as the steps do."
         yield Breach((*path, "clearance_steps"), problem, remedy)

@@ -1,1 +1,1 @@
-"""Many runs, and measured ones."""
+"""Commands that study a machine or a bearing, or use a measurement."""

@@ -1,35 +1,41 @@
-"""`frb compare`: one case with several models of its films."""
+"""`frb compare`: one case with several models of its films; `frb accuracy`: cost against error."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from frbcli.cli.common import Terminal, case_or_run_argument, output_options
-from frbcli.cli.files import INPUT, OUTPUT_FOLDER, here, next_to
+from frbcli.cli.common import Terminal, case_argument, case_or_run_argument, output_options
 from frbcli.cli.options import (
+    INPUT,
+    OUTPUT_FOLDER,
+    TIME_OPTION,
     Command,
     cavitation_option,
     coupling_option,
     gathered,
+    here,
+    next_to,
     signal_option,
     theory_option,
     thermal_option,
 )
 from frbcli.cli.progress import OutputOptions, computing, display, outputs_options
-from frbcli.cli.runs.transient import exit_code
-from frbcli.cli.studies.fit import measured_options, run_of
-from frbcli.columns import documents, table_of
-from frbcli.errors import input_error
+from frbcli.cli.studies.measurements import measured_options, run_of
+from frbcli.cli.transient import exit_code
+from frbcli.columns import documents, short_number, table_of
+from frbcli.errors import INTERRUPTED, input_error
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
     from frbcli.case.schema import Case
+    from frbcli.studies.accuracy import AccuracyLadder, RungResult
     from frbcli.studies.against import AgainstMeasured
     from frbcli.studies.compare import Comparison
+
 
 KINDS = ("critical-speed", "self-excited", "onset", "offset", "lock-in")
 
@@ -60,7 +66,7 @@ class Models:
 @outputs_options("CASE-compare.png, here")
 @output_options
 @gathered("models", Models)
-def command(
+def compare_models(
     case: Case | Path,
     models: Models,
     test: str,
@@ -95,7 +101,7 @@ def command(
             case, models.cavitation, models.theory, test, keep, lambda variant, *rest: observe(variant.name, *rest),
             models.coupling, models.thermal,
         )  # fmt: skip
-    _report(compared, bool(models.coupling), terminal)
+    _report_models(compared, bool(models.coupling), terminal)
     warm = table_of(HEAT, compared.results)
     if models.thermal:
         terminal.show("at the end", warm)
@@ -111,7 +117,7 @@ def command(
 
 def _kinematic(case: Case, test: str, wanted: Models, outputs: OutputOptions, terminal: Terminal) -> int:
     """A kinematic test with several models; their films all have finite length."""
-    from frbcli.cli.machines.kinematic import run_test
+    from frbcli.cli.studies.bearing import run_test
     from frbcli.film.cavitation.table import laws, names
 
     for option, given, problem in (
@@ -125,7 +131,7 @@ def _kinematic(case: Case, test: str, wanted: Models, outputs: OutputOptions, te
     return run_test(case, test, models, outputs, terminal, compared=True) or 0
 
 
-def _report(comparison: Comparison, couplings: bool, terminal: Terminal) -> None:
+def _report_models(comparison: Comparison, couplings: bool, terminal: Terminal) -> None:
     from frbcli.studies.compare import COUPLING_TABLE, MODELS
 
     name, table = COUPLING_TABLE if couplings else MODELS, comparison.table().with_speeds_in(terminal.speeds)
@@ -156,7 +162,7 @@ def beside_measured(
         run = read_run(run_file)
         comparison = against_measured(run, run_of(file, measurement, terminal), signal)
     terminal = terminal.with_speeds_in(speed_unit_of(run))
-    _show(terminal, comparison)
+    _show_deviations(terminal, comparison)
     terminal.emit(
         {
             "command": "compare",
@@ -169,7 +175,7 @@ def beside_measured(
     )
 
 
-def _show(terminal: Terminal, comparison: AgainstMeasured) -> None:
+def _show_deviations(terminal: Terminal, comparison: AgainstMeasured) -> None:
     from frbcli.studies.against import DEVIATIONS
 
     rows = []
@@ -183,3 +189,88 @@ def _show(terminal: Terminal, comparison: AgainstMeasured) -> None:
     where = comparison.point.replace("_", " ")
     terminal.table(f"first events of the {where}, rotor speed", ("event", "computed", "measured"), rows)
     terminal.show("ridges", table_of(DEVIATIONS, comparison.deviations()))
+
+
+@click.command(cls=Command)
+@case_argument
+@click.option("--until", type=TIME_OPTION, metavar="TIME", show_default="as in CASE",
+              help='End of the run, e.g. "2 s".')  # fmt: skip
+@theory_option("all that apply")
+@coupling_option
+@outputs_options("CASE-accuracy.png, here")
+@output_options
+def accuracy_ladder(
+    case: Case,
+    until: float | None,
+    theory: tuple[str, ...],
+    coupling: tuple[str, ...],
+    outputs: OutputOptions,
+    terminal: Terminal,
+) -> int:
+    """Run CASE up on a ladder of theories, meshes and tolerances against a fine reference: error over cost."""
+    from frbcli.studies.accuracy import accuracy, by_theory
+
+    places = outputs.check(here(case.name, "-accuracy.png"))
+    with computing(terminal, case, by_theory(case, theory)) as shown:
+        observe = shown.of_runs()
+        ladder = accuracy(case, until, theory, coupling, lambda rung, *rest: observe(rung.name, *rest))
+    _report_ladder(ladder, terminal)
+    terminal.emit(_ladder_document(ladder))
+    if not ladder.ladder:
+        places = replace(places, picture=None)
+    places.write(terminal, ladder)
+    return 0 if ladder.complete else INTERRUPTED
+
+
+def _ladder_document(ladder: AccuracyLadder) -> dict[str, Any]:
+    from frbcli.studies.accuracy import RESULT, RUNG
+
+    (coarser,), (reference,) = documents(RUNG, [ladder.coarser]), documents(RESULT, [ladder.reference])
+    reference |= _stated(ladder.reference) | {"compared_with": coarser, "change": reference.pop("error")}
+    rungs = zip(ladder.table().documents(), ladder.ladder, strict=True)
+    ended = zip(documents(RUNG, [rung for rung, _ in ladder.failed]), ladder.failed, strict=True)
+    failed = [row | {"message": problem} for row, (_, problem) in ended]
+    return {
+        "command": "accuracy",
+        "case": ladder.case.name,
+        **({} if ladder.complete else {"status": "interrupted"}),
+        "until_s": ladder.until_s,
+        "reference": reference,
+        "ladder": [row | _stated(item) for row, item in rungs],
+        **({"failed": failed} if ladder.failed else {}),
+    }
+
+
+def _report_ladder(ladder: AccuracyLadder, terminal: Terminal) -> None:
+    table = ladder.table()
+    rows = table.cells()
+    if len({item.rung.coupling for item in ladder.ladder}) > 1:
+        rows = [(mark, "\n".join((film, item.rung.coupling.replace("-", "-\n"))), *rest)
+                for item, (mark, film, *rest) in zip(ladder.ladder, rows, strict=True)]  # fmt: skip
+    terminal.table(f"{ladder.case.heading}, first {ladder.until_s:g} s", table.heads(), rows)
+    terminal.sentence(f"* choice of the plan, + on Pareto's front; {table.legend()}.")
+    reference, change = ladder.reference.rung, ladder.reference.error
+    coarser = "" if reference.mesh is None else "on a coarser mesh and "
+    terminal.sentence(
+        f"reference: {reference.name}; {coarser}with "
+        f"twice the tolerance it changes by {short_number(change.eccentricity_largest)} (max) and "
+        f"{short_number(change.eccentricity_rms)} (rms)."
+    )
+    for item in (item for item in ladder.ladder if item.planned):
+        stated = item.stated.get("eccentricity")
+        quoted = "" if stated is None else f", its stated error is {short_number(stated)}"
+        terminal.sentence(f"the choice of the plan costs {ladder.above_front():.2g} times Pareto's front{quoted}.")
+    ended = {item.error.until_s for item in ladder.ladder} - {ladder.until_s}
+    if ended:
+        terminal.result(f"errors of the eccentricity until {min(ended):.4g} s, where a whirl begins to grow.")
+    for item in ladder.ladder:
+        if item.status != "finished":
+            terminal.result(f"{item.rung.name}: {item.status}")
+    for rung, problem in ladder.failed:
+        terminal.result(f"{rung.name}: did not begin: {problem}")
+    if not ladder.complete:
+        terminal.result(f"Interrupted: {len(ladder.ladder)} rungs are done, without thresholds.")
+
+
+def _stated(item: RungResult) -> dict[str, Any]:
+    return {"stated": dict(item.stated)} if item.stated else {}

@@ -11,10 +11,21 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Terminal, output_options
-from frbcli.cli.files import INPUT, OUTPUT_FOLDER, check_outputs, force_option, forced, here
-from frbcli.cli.options import SPEED_OPTION, Command, complete_case, gathered, look_options
+from frbcli.cli.options import (
+    INPUT,
+    OUTPUT_FOLDER,
+    SPEED_OPTION,
+    Command,
+    check_outputs,
+    complete_case,
+    force_option,
+    forced,
+    gathered,
+    here,
+    look_options,
+)
 from frbcli.cli.progress import Display, display, draw, picture_switch
-from frbcli.cli.runs.transient import ENDED_EARLY, EXIT_CODES
+from frbcli.cli.transient import ENDED_EARLY, EXIT_CODES
 from frbcli.errors import input_error
 from frbcli.results.records import WHOLE
 from frbcli.units import SpeedUnit
@@ -22,8 +33,8 @@ from frbcli.units import SpeedUnit
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from frbcli.studies.sweep.points import Distribution
-    from frbcli.studies.sweep.sweep import Sweep, SweepPoint
+    from frbcli.studies.sweep import Sweep, SweepPoint
+    from frbcli.studies.sweep_points import Distribution
 
 LONGEST_TABLE = 40  # points of the printed table; its file and JSON have all
 
@@ -58,7 +69,7 @@ class Machines:
     def points(self, distributions: Sequence[Distribution], others: object) -> Sequence[Mapping[str, str]]:
         """The machines. others: keys with several values, or a list of points, with which nothing can scatter. Raises
         InputError."""
-        from frbcli.studies.sweep.points import read_correlation, samples
+        from frbcli.studies.sweep_points import read_correlation, samples
 
         if others:
             problem, remedy = "gives several values while other keys scatter.", "Sweep each of its values by itself."
@@ -117,7 +128,7 @@ def command(
     The same command resumes an interrupted sweep.
     """
     from frbcli.case.reading.load import load_case
-    from frbcli.studies.sweep.sweep import Workers, check_table_format, sweep, write_table
+    from frbcli.studies.sweep import Workers, check_table_format, sweep, write_table
 
     fixed, distributions = _scattered(settings)
     fixed, axes = _axes(fixed)
@@ -145,7 +156,7 @@ def command(
 
 def _scattered(settings: Sequence[str]) -> tuple[list[str], list[Distribution]]:
     """Other settings, and the distributions of the keys that scatter."""
-    from frbcli.studies.sweep.points import read_distribution
+    from frbcli.studies.sweep_points import read_distribution
 
     others: list[str] = []
     distributions: dict[str, Distribution] = {}
@@ -172,7 +183,7 @@ def _check_places(table: Path, picture: Path | None) -> None:
 def _axes(settings: Sequence[str]) -> tuple[list[str], list[dict[str, tuple[str, ...]]]]:
     """Settings of one value, which hold for all points, and the values of the other keys, those together that are
     linked."""
-    from frbcli.studies.sweep.points import LINK, read_values, split_values
+    from frbcli.studies.sweep_points import LINK, read_values, split_values
 
     fixed: list[str] = []
     axes: list[dict[str, tuple[str, ...]]] = []
@@ -198,7 +209,7 @@ def _axes(settings: Sequence[str]) -> tuple[list[str], list[dict[str, tuple[str,
 
 
 def _points(axes: Sequence[Mapping[str, Sequence[str]]], list_file: Path | None) -> Sequence[Mapping[str, str]]:
-    from frbcli.studies.sweep.points import linked, product, read_list
+    from frbcli.studies.sweep_points import linked, product, read_list
 
     if list_file is None and not axes:
         remedy = "Write e.g. --set key=v1,v2, or --list FILE."
@@ -248,7 +259,7 @@ def _report(swept: Sweep, terminal: Terminal) -> None:
 
 
 def _picture(swept: Sweep, target: Path, terminal: Terminal) -> Path | None:
-    from frbcli.plot.sweep import can_draw, sweep_figure
+    from frbcli.plot.studies import can_draw, sweep_figure
 
     if not can_draw(swept):
         terminal.remark("No picture: it needs one or two keys with several values, and a point with a whirl.")
@@ -267,7 +278,7 @@ def of_machines(
     swept: Sweep, below_Hz: float | None, target: Path | None, terminal: Terminal
 ) -> tuple[dict[str, Any], Path | None]:
     """Tables and picture of the scatter, and its part of the JSON document."""
-    from frbcli.studies.sweep.scatter import scatter
+    from frbcli.studies.sweep import scatter
 
     seen, unit = scatter(swept, below_Hz), terminal.speeds
     rows = [(f"{percent:g} %", _within(speed, unit)) for percent, speed in seen.percentiles]
@@ -284,7 +295,7 @@ def of_machines(
         terminal.result(f"{seen.left_out} machines without a known result are left out.")
     drawn = None
     if target is not None:
-        from frbcli.plot.sweep import scatter_figure
+        from frbcli.plot.studies import scatter_figure
 
         drawn = draw(terminal, lambda: scatter_figure(swept.case.heading, seen), target)
     percentiles = [{"percent": percent, "speed_Hz": speed} for percent, speed in seen.percentiles]

@@ -22,7 +22,16 @@ from frbcli.errors import Fault
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import FINER
-from frbcli.scene.films import as_text, coupling_faults, film_places, is_published, misaligned
+from frbcli.scene.films import (
+    as_text,
+    bearing_key,
+    cavitation_keys,
+    coupling_faults,
+    film_keys,
+    film_places,
+    is_published,
+    misaligned,
+)
 from frbcli.scene.forms.form import PUBLISHED, FilmForm, SolveCounts, cells_B, transport_of
 from frbcli.scene.gate.rule import (
     ALL,
@@ -40,7 +49,6 @@ from frbcli.scene.gate.rule import (
     Faults,
     Rule,
 )
-from frbcli.scene.keys import bearing_key, cavitation_keys, film_keys
 from frbcli.scene.machine.turbocharger import shaft_of
 from frbcli.scene.planning.cell_choice import (
     ALONG,

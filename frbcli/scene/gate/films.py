@@ -31,6 +31,7 @@ from frbcli.scene.films import (
     HOUSING,
     FilmPlace,
     coupling_faults,
+    film_keys,
     film_places,
     film_section,
     is_published,
@@ -40,7 +41,6 @@ from frbcli.scene.films import (
 )
 from frbcli.scene.forms.form import CLIPPED
 from frbcli.scene.forms.tilted import CELLS, INCLINED, TILTED
-from frbcli.scene.keys import film_keys
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.planning.film_choice import film_form, form_of
 from frbcli.units import display

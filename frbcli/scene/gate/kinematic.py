@@ -15,7 +15,9 @@ from frbcli.errors import Fault, did_you_mean
 from frbcli.scene.films import (
     as_text,
     bearing_films,
+    bearing_key,
     coupled,
+    film_keys,
     film_section,
     least_gaps,
     misaligned,
@@ -26,7 +28,6 @@ from frbcli.scene.films import (
     tilts,
 )
 from frbcli.scene.gate.rule import ROTATION
-from frbcli.scene.keys import bearing_key, film_keys
 
 OF_THE_FILM = {
     "name", "title", "confirm", "given_bearings", "given_oil", "film", "thermal", "motion", "start", "contact",

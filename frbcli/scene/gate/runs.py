@@ -11,6 +11,7 @@ from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.scene.coupling import coupling_of
 from frbcli.scene.films import (
+    film_keys,
     film_places,
     is_plain,
 )
@@ -18,7 +19,6 @@ from frbcli.scene.forms.form import TableForm
 from frbcli.scene.forms.solutions import solution_fault
 from frbcli.scene.forms.tilted import CELLS
 from frbcli.scene.gate.rule import run_omega
-from frbcli.scene.keys import film_keys
 from frbcli.scene.planning.film_choice import all_clipped, form_of
 
 

@@ -26,6 +26,7 @@ from frbcli.scene.films import (
     HOUSING,
     FilmPlace,
     as_text,
+    cavitation_keys,
     coupled_rings,
     coupling_faults,
     film_places,
@@ -33,7 +34,6 @@ from frbcli.scene.films import (
     turning_cartridges,
     turns_with_oil,
 )
-from frbcli.scene.keys import cavitation_keys
 from frbcli.scene.machine.rotor import (
     element_parts,
     harmonics_of,

@@ -23,7 +23,7 @@ from frbcli.runs.run import runup
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
-from frbcli.studies.sweep.sweep import sweep
+from frbcli.studies.sweep import sweep
 
 SHORT_FILM = {
     "kind": "single-film", "width": "20 mm", "diameter": "25 mm", "clearance": "35 um", "ends": "oil-bath",

@@ -14,7 +14,7 @@ from frbcli.film.cavitation.barotropic import vapour_fraction
 from frbcli.film.cavitation.conditions import Elrod
 from frbcli.film.cavitation.law import Law, Scales
 from frbcli.film.cavitation.two_phase import Peeken, TwoPhase
-from frbcli.plot.machine.law import law_figure
+from frbcli.plot.machine.film import law_figure
 
 CAVITY = 5.0  # 1/s, absolute
 SCALES = Scales(reference=3.0, cavitation=0.0, ambient=CAVITY)

@@ -19,7 +19,7 @@ from frbcli.film.cells.balance.boundaries import feed_at, supply_line
 from frbcli.film.cells.data import PASSED
 from frbcli.film.cells.film import Motion
 from frbcli.film.cells.linearised import steady_solution
-from frbcli.plot.run.quantities import quantity_figure
+from frbcli.plot.motion import quantity_figure
 from frbcli.results.store import Run
 from frbcli.runs import march
 from frbcli.scene.machine.system import make_system

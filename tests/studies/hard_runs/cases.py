@@ -17,9 +17,9 @@ from studies.hard_runs.worker import DIED, HUNG, Worker
 
 from frbcli.arrays import Array
 from frbcli.bearing_tests.kinematic import KinematicResult, rotation, squeeze, whirl
-from frbcli.case.reading.hard import HardCase, hard_cases, hard_folder
+from frbcli.case.reading.shipped import HardCase, hard_cases, hard_folder
 from frbcli.case.schema import Case
-from frbcli.cli.hard import HARD_CASE
+from frbcli.cli.cases import HARD_CASE
 from frbcli.columns import Column, Shown, Table, Tabular, named, short_number, table_of
 from frbcli.compiled import working_time
 from frbcli.errors import InputError, NotConverged

@@ -8,7 +8,7 @@ from multiprocessing.connection import Connection
 from types import TracebackType
 from typing import Any
 
-from frbcli.runs.record.interrupt import deaf
+from frbcli.runs.interruption import deaf
 
 HUNG, DIED = "hung", "died"
 

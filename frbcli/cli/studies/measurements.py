@@ -1,19 +1,20 @@
-"""`frb fit`: numbers of a case from a measured run.
+"""Commands that use a measurement: `frb fit`, numbers of a case from a measured run; `frb balance`, correction masses.
 
-Options that say which columns of a measurement hold a motion, and the run that it makes.
-"""
+Options that say which columns of a measurement hold a motion, and the run that it makes."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.files import CASE_FILE, INPUT, forced, here
 from frbcli.cli.options import (
+    CASE_FILE,
+    INPUT,
     KEY_RANGE,
     LENGTH_OPTION,
     SPEED_OPTION,
@@ -21,12 +22,19 @@ from frbcli.cli.options import (
     KeyRange,
     Names,
     UnitOption,
+    WrittenOption,
+    check_outputs,
+    force_option,
+    forced,
+    here,
     signal_option,
+    speeds_option,
 )
-from frbcli.cli.progress import READING, OutputOptions, computing, display, outputs_options
+from frbcli.cli.progress import READING, OutputOptions, computing, csv_option, display, outputs_options
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
+    from frbcli.balancing import Balancing, TrialRun
     from frbcli.case.schema import Case
     from frbcli.cli.common import Terminal
     from frbcli.results.store import Run
@@ -40,19 +48,19 @@ _UNITS = {kind: UnitOption(kind, unit, example) for kind, unit, example in
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-class Rate(click.ParamType["float | str"]):
+class Rate(WrittenOption):
     """Samples per second, or the name of a single number of the file."""
 
     name = "rate"
 
-    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float | str:
+    def read(self, text: str) -> float | str:
         """Samples per second, 1/s, or the name."""
         try:
-            rate = float(str(value))
+            rate = float(text)
         except ValueError:
-            return str(value)
+            return text
         if not rate > 0.0:
-            self.fail(f"{value} samples per second are not above 0.", param, ctx)
+            raise ValueError("samples per second are not above 0.")
         return rate
 
 
@@ -90,7 +98,7 @@ def measured_options(function: Function) -> Function:
 
 def show_columns(path: Path, terminal: Terminal) -> None:
     """A table of what a measured file holds, a row for each column, with its unit, or what it is if it is none."""
-    from frbcli.results.measured.reading import read_columns
+    from frbcli.results.measured import read_columns
 
     listed = read_columns(path).listed()
     rows = [(row["name"], " x ".join(map(str, row["shape"])), row["unit"] or "-", row["kind"]) for row in listed]
@@ -133,7 +141,7 @@ def _measurement(context: click.Context, _: click.Parameter, clearance: float | 
 def run_of(path: Path, measurement: Measurement | None, terminal: Terminal, relative: bool = True) -> Run:
     """The run in a file: a computed one, or a measurement, whose units are remarked. relative: whether amplitudes refer
     to a clearance. Raises as read_run and measured_run do."""
-    from frbcli.results.measured.reading import READERS, read_columns
+    from frbcli.results.measured import READERS, read_columns
 
     if not path.exists() and path.suffix.lower() in READERS:
         read_columns(path)  # which raises: a file that is not there is said before its options are
@@ -177,7 +185,7 @@ POOR = 2.0  # times the scatter of the measurement: the case does not describe i
 @measured_options
 @outputs_options("CASE-fit.png, here")
 @output_options
-def command(
+def fit_case(
     case: Case,
     file: Path,
     vary: tuple[str, ...],
@@ -207,7 +215,7 @@ def command(
             shown.redraw(f"run {number}: {', '.join(numbers)}")
 
         fitted = fit(case, measured, vary, limits, signal, watch)
-    _show(terminal, fitted)
+    _show_fit(terminal, fitted)
     if save is not None:
         from frbcli.results.write import write
 
@@ -227,7 +235,7 @@ def command(
     )
 
 
-def _show(terminal: Terminal, fitted: Fit) -> None:
+def _show_fit(terminal: Terminal, fitted: Fit) -> None:
     terminal.show(fitted.case.heading, fitted.table())
     terminal.sentence(EXPLANATION)
     terminal.result(f"{fitted.runs} runs; residuals of {fitted.chi:.2g} times the scatter of the measurement.")
@@ -247,3 +255,156 @@ def _bounds(case: Case, given: tuple[KeyRange, ...]) -> dict[str, tuple[float, f
             raise click.UsageError(f"--bounds {span.key} is no number of the case.")
         bounds_of[span.key] = (low, high)
     return bounds_of
+
+
+EXAMPLE = 'a=trial.csv:"5 g*mm@30deg"'
+MOST_ROWS = 24  # of points at speeds; JSON and CSV have all
+
+
+class TrialOption(WrittenOption):
+    """A plane, the file of its trial run, the unbalance and its angle, as a=trial.csv:5 g*mm@30deg."""
+
+    name = "trial"
+
+    def read(self, text: str) -> tuple[str, Path, float, float]:
+        """Plane, path, kg m and degrees."""
+        from frbcli.units import ANGLE, quantity
+
+        plane, equals, rest = text.partition("=")
+        file, colon, given = rest.rpartition(":")
+        size, at, angle = given.rpartition("@")
+        if not (plane.strip() and equals and file.strip() and colon and at):
+            raise ValueError(f"is no trial run. Write e.g. {EXAMPLE}.")
+        unbalance = quantity(size.strip(), "kg*m", "5 g*mm")
+        turned = quantity(angle.strip(), ANGLE, "30 deg")
+        if not unbalance > 0.0:
+            raise ValueError("has no unbalance above 0.")
+        degrees = quantity("1 rad", ANGLE) * turned / quantity("1 deg", ANGLE)
+        path = INPUT.convert(file.strip(), None, click.get_current_context(silent=True))
+        return plane.strip(), path, unbalance, degrees
+
+
+@click.command(cls=Command)
+@click.argument("run_file", metavar="RUN", type=INPUT)
+@click.option("--planes", type=Names(), default=(), metavar="A,B", show_default="as in --trial",
+              help="Disks where masses can be added.")  # fmt: skip
+@click.option("--trial", "trials", multiple=True, type=TrialOption(), metavar="PLANE=FILE:UNBALANCE@ANGLE",
+              show_default="coefficients are computed for the case of RUN",
+              help=f"A run with a trial unbalance in a plane, e.g. {EXAMPLE}. Repeatable.")  # fmt: skip
+@speeds_option("the one that RUN holds, or eight of its ramp")
+@click.option("--probe", "points", multiple=True, metavar="POINT", show_default="all of the shaft",
+              help="Point of the run that takes part, e.g. journal_left. Repeatable.")  # fmt: skip
+@click.option("--triggered", is_flag=True,
+              help="Measurements without pulses began at the same angle of the rotor.")  # fmt: skip
+@csv_option
+@force_option()
+@measured_options
+@output_options
+def balance_rotor(
+    run_file: Path,
+    planes: tuple[str, ...],
+    trials: tuple[tuple[str, Path, float, float], ...],
+    speeds: tuple[float, ...],
+    points: tuple[str, ...],
+    triggered: bool,
+    csv: Path | None,
+    measurement: Measurement | None,
+    terminal: Terminal,
+) -> None:
+    """Find the unbalance that has to be added in planes of a rotor, so that RUN would not move with it.
+
+    Influence coefficients are computed for the case of a computed run. A measured one needs a trial run for each plane,
+    with the same columns; --x a,b takes several probes.
+    """
+    from frbcli.balancing import TrialRun, balance
+    from frbcli.case.run import speed_unit_of
+    from frbcli.results.write import TABLES
+
+    check_outputs((csv, TABLES["csv"]))
+    with display(terminal, READING):
+        run = _recorded(run_file, measurement, terminal)
+        tried = [TrialRun(plane, _recorded(file, measurement, terminal), *given) for plane, file, *given in trials]
+    terminal = terminal.with_speeds_in(speed_unit_of(run))
+    with _progress(terminal, run, tried):
+        balancing = balance(run, planes, speeds or None, points or None, tried, triggered)
+    _show_corrections(terminal, balancing)
+    if csv is not None:
+        from frbcli.results.write import write_table
+
+        write_table(balancing.to_pandas(), csv, forced())
+        terminal.result(f"table: {csv}")
+    terminal.emit(balance_document(balancing, run_file) | {"csv": csv})
+
+
+def balance_document(balancing: Balancing, run_file: Path) -> dict[str, object]:
+    """As JSON."""
+    from frbcli.balancing import POINTS
+    from frbcli.columns import documents
+
+    return {
+        "command": "balance",
+        "run": run_file,
+        "status": balancing.status,
+        "influence": "trials" if balancing.trials else "computed",
+        "planes": balancing.table().documents(),
+        "residual": balancing.residual,
+        "condition": balancing.condition,
+        "speeds_Hz": balancing.speeds_Hz,
+        "points": documents(POINTS, balancing.points),
+        "doubts": balancing.doubts,
+    }
+
+
+def _recorded(path: Path, measurement: Measurement | None, terminal: Terminal) -> Run:
+    """The run in a file, of a measurement with all probes of --x and --y."""
+    from frbcli.results.measured import READERS
+
+    across, up = ([] if text is None else [name.strip() for name in text.split(",")]
+                  for text in ((None, None) if measurement is None else (measurement.x, measurement.y)))  # fmt: skip
+    if path.suffix.lower() not in READERS or measurement is None or len(across) < 2 or not path.exists():
+        computed = path.suffix.lower() not in READERS  # a computed trial run among measurements has no columns
+        return run_of(path, None if computed else measurement, terminal, relative=False)
+    if up and len(up) != len(across):
+        raise click.UsageError(f"--x has {len(across)} columns and --y {len(up)}: give one for each probe, or no --y.")
+    from frbcli.analysis.measured import measured_probes
+
+    upward: list[str | None] = [*up] if up else [None] * len(across)
+    run = measured_probes(path, measurement, list(zip(across, upward, strict=True)))
+    for remark in run.remarks:
+        terminal.remark(remark)
+    return run
+
+
+def _progress(terminal: Terminal, run: Run, trials: Sequence[TrialRun]) -> Any:
+    """Shown while influence coefficients are computed."""
+    if trials or not run.case_text:
+        return nullcontext()
+    from frbcli.case.reading.load import load_case_text
+
+    return computing(terminal, load_case_text(run.case_text, name=run.case_name), kernels="rest")
+
+
+def _show_corrections(terminal: Terminal, balance: Balancing) -> None:
+    from frbcli.balancing import POINTS
+    from frbcli.columns import table_of
+
+    for doubt in balance.doubts:
+        terminal.sentence(f"Doubtful: {doubt}")
+    terminal.show(f"{balance.run.title}: {'doubtful ' if balance.doubts else ''}corrections", balance.table())
+    zero = "the trial unbalances" if balance.trials else "`phase` of a disk"
+    terminal.sentence(
+        "Add the correction: it is opposite to the unbalance. Angles are on the rotor, in the sense of rotation, from "
+        f"the zero of {zero}."
+    )
+    rows = balance.points
+    table = table_of(POINTS, rows[-MOST_ROWS:])
+    terminal.show("Synchronous amplitudes, and as expected with the corrections", table)
+    if len(rows) > MOST_ROWS:
+        terminal.result(f"The last {MOST_ROWS} of {len(rows)}: --json has all.")
+    vectors = 2 * len(rows)
+    by = "trial runs" if balance.trials else "the linear response of the case"
+    terminal.sentence(
+        f"Residual {100.0 * balance.residual:.2g} % of {vectors} vectors at "
+        f"{terminal.speeds.listed(balance.speeds_Hz)}; condition number {balance.condition:.3g}; "
+        f"influence coefficients of {by}."
+    )

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.files import INPUTS, here
-from frbcli.cli.options import KEY_RANGE, Command, KeyRange, speeds_option
+from frbcli.cli.options import INPUTS, KEY_RANGE, Command, KeyRange, here, speeds_option
 from frbcli.cli.progress import Display, OutputOptions, Outputs, computing, outputs_options
 from frbcli.columns import document, documents, table_of
 

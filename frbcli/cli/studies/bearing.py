@@ -1,29 +1,47 @@
-"""`frb bearing`: the sheet of a bearing over rotor speed or eccentricity; of a case whose bearings have balls and no
-film the sheet of these."""
+"""Commands for single bearings: `frb bearing` and `frb thrust`, the sheets of films, balls and thrust bearings.
+
+`frb rotation`, `frb squeeze` and `frb whirl`: the kinematic bearing tests of section 4.2.2, and their comparison.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.files import CASE_FILE, forced, here
-from frbcli.cli.machines.static_tables import show_machine
-from frbcli.cli.options import LOAD_OPTION, REST_OPTION, Command, film_option, speeds_option
+from frbcli.cli.options import (
+    CASE_FILE,
+    LENGTH_OPTION,
+    LOAD_OPTION,
+    REST_OPTION,
+    Command,
+    cavitation_option,
+    film_option,
+    forced,
+    here,
+    speeds_option,
+)
 from frbcli.cli.progress import OutputOptions, computing, display, outputs_options
-from frbcli.errors import NotConverged
+from frbcli.cli.studies.static_tables import film_document, show_film, show_machine
+from frbcli.errors import INTERRUPTED, NotConverged
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     import pandas as pd
 
+    from frbcli.bearing_tests.kinematic import KinematicResult, KinematicTest
     from frbcli.case.schema import Case
     from frbcli.linear.sheets.ball import BallSheet, BallState
     from frbcli.linear.sheets.bearing import BearingSheet
     from frbcli.linear.sheets.film_state import FilmState
+    from frbcli.linear.sheets.thrust import ThrustSheet
+
 
 Item = TypeVar("Item")
 FEW_POINTS, SCREEN_ROWS = 2, 8  # points that are always shown in full; rows of all films on one screen
@@ -54,7 +72,7 @@ PRESSED = (
 @click.option("--all", "everything", is_flag=True, help="Show K, C and all speeds of all films.")
 @outputs_options("CASE-bearing.png, here")
 @output_options
-def command(
+def bearing(
     case: Case,
     over: str,
     speeds: tuple[float, ...],
@@ -89,7 +107,7 @@ def command(
             sheet = bearing_sheet(case, speeds or None, load, shown.counting())
         else:
             sheet = sommerfeld_chart(case, speed_Hz=speeds[0] if speeds else None, observe=shown.counting())
-    _show(terminal, sheet, (film,) if film is not None else sheet.films, everything or film is not None)
+    _show_films(terminal, sheet, (film,) if film is not None else sheet.films, everything or film is not None)
     _write_ross(terminal, sheet.to_pandas(), elements)
     terminal.emit(
         {
@@ -148,7 +166,7 @@ def _show_problems(terminal: Terminal, points: Sequence[FilmState] | Sequence[Ba
         terminal.result(f"No state at {len(problems)} of {len(points)} points. The first: {problems[0].problem}")
 
 
-def _show(terminal: Terminal, sheet: BearingSheet, films: Sequence[str], full: bool) -> None:
+def _show_films(terminal: Terminal, sheet: BearingSheet, films: Sequence[str], full: bool) -> None:
     """The sheets of some films; not full: without matrices, at so many of the points as fill a screen, unless there are
     few of them."""
     from frbcli.columns import legend, table_of, with_speeds_in
@@ -258,3 +276,147 @@ def _show_balls(terminal: Terminal, sheet: BallSheet) -> None:
     if dented:
         terminal.sentence(f"Hertz pressures above {display(DENTED, 'Pa')} leave dents (ISO 76): {len(dented)} states.")
     _show_problems(terminal, sheet.points)
+
+
+@click.command(cls=Command)
+@case_argument
+@click.option("--gap", "gaps", multiple=True, type=LENGTH_OPTION, metavar="GAP",
+              show_default="10 over the range, without --load",
+              help='Gap over the lands, e.g. "12 um". Repeatable.')  # fmt: skip
+@click.option("--load", "loads", multiple=True, type=LOAD_OPTION, metavar="LOAD",
+              help='Load, e.g. "40 N". Repeatable.')  # fmt: skip
+@speeds_option("the highest of CASE")
+@outputs_options("CASE-thrust.png, here")
+@output_options
+def thrust(
+    case: Case,
+    gaps: tuple[float, ...],
+    loads: tuple[float, ...],
+    speeds: tuple[float, ...],
+    outputs: OutputOptions,
+    terminal: Terminal,
+) -> None:
+    """Load, loss, oil flow, pressure, stiffness and damping of every thrust bearing of CASE."""
+    from frbcli.linear.sheets.thrust import thrust_sheet
+
+    places = outputs.check(here(case.name, "-thrust.png"))
+    with display(terminal) as shown:
+        sheet = thrust_sheet(case, gaps or None, speeds or None, loads, shown.counting())
+    _show_thrust(terminal, sheet)
+    terminal.emit(
+        {
+            "command": "thrust",
+            "case": case.name,
+            "points": sheet.table().documents(),
+            **places.write(terminal, sheet),
+        }
+    )
+
+
+def _show_thrust(terminal: Terminal, sheet: ThrustSheet) -> None:
+    from frbcli.columns import legend, table_of
+    from frbcli.linear.columns import FILMS, THRUST, TILT_DAMPING, TILT_STIFFNESS
+
+    titles = {FILMS: "thrust bearing", TILT_STIFFNESS: "stiffness in tilt, N m", TILT_DAMPING: "damping in tilt, N m s"}
+    for bearing in sheet.bearings:
+        states = table_of(THRUST, sheet.of(bearing))
+        terminal.result(" ".join(filter(None, (sheet.case.heading, bearing))))
+        for table, title in titles.items():
+            terminal.show(title, states, table)
+    terminal.sentence(f"{legend(THRUST, FILMS)}. Errors are the change from a mesh of half as many elements per side.")
+
+
+LARGEST = "Values are from the moment of the largest force."
+
+
+def _command(test: str, description: str) -> Callable[..., Any]:
+    """The command of a test."""
+
+    @click.command(cls=Command, help=description)
+    @case_argument
+    @cavitation_option
+    @outputs_options(f"CASE-{test}.png, here")
+    @output_options
+    def command(case: Case, cavitation: tuple[str, ...], outputs: OutputOptions, terminal: Terminal) -> int | None:
+        return run_test(case, test, cavitation, outputs, terminal)
+
+    return command
+
+
+rotation = _command(
+    "rotation", "Rotation of a journal at a displacement or under a load: pressure, forces, torque, oil."
+)
+squeeze = _command("squeeze", "Vertical oscillation of a journal (4.47): force over time.")
+whirl = _command("whirl", "Circular motion of a journal (4.48): pressure at the bottom of the bearing over time.")
+
+
+def run_test(
+    case: Case, test: str, cavitation: tuple[str, ...], options: OutputOptions, terminal: Terminal,
+    compared: bool = False,
+) -> int | None:  # fmt: skip
+    """Run a test, print and draw it; its exit code. compared: write the document of `frb compare`."""
+    from frbcli.bearing_tests import kinematic
+
+    outputs = options.check(here(case.name, f"-{'compare' if compared else test}.png"))
+    tests = {"rotation": kinematic.rotation, "squeeze": kinematic.squeeze, "whirl": kinematic.whirl}
+    with computing(terminal, case, kernels="rest") as shown:
+        outcome = tests[test](case, cavitation, shown.counting())
+    _report_test(outcome, terminal)
+    head = {"command": "compare", "case": case.name, "test": test} if compared else {"command": test, "case": case.name}
+    whole = {} if outcome.complete else {"status": "interrupted"}
+    terminal.emit({**head, **whole, "results": [_test_document(outcome, result) for result in outcome.results]})
+    if all(result.loads is None for result in outcome.results):
+        outputs = replace(outputs, picture=None)
+    outputs.write(terminal, outcome)
+    if not outcome.complete:
+        return INTERRUPTED
+    return NotConverged.exit_code if any(result.status != "ok" for result in outcome.results) else None
+
+
+def _report_test(test: KinematicTest, terminal: Terminal) -> None:
+    """Two tables: forces and oil."""
+    from frbcli.bearing_tests.columns import FORCES, GASES, OIL, error_column, force_size, result_columns
+    from frbcli.columns import table_of
+    from frbcli.scene.films import states_moment
+
+    largest = max(map(force_size, test.results), default=0.0)
+    columns = (*result_columns(states_moment(test.case), test.carries_gas), error_column(largest))
+    table = table_of(columns, test.results)
+    rows: dict[str, list[Sequence[str]]] = {FORCES: [], OIL: []}
+    for result, forces, oil in zip(test.results, table.cells(FORCES), table.cells(OIL), strict=True):
+        solved = result.loads is not None
+        rows[FORCES].append(forces if solved else (forces[0], "none", *[""] * (len(forces) - 2)))
+        rows[OIL].append(oil if solved else (oil[0], *[""] * (len(oil) - 2), oil[-1]))
+    for name, heading in ((FORCES, f"{test.case.heading}: {test.test}"), (OIL, "")):
+        terminal.table(heading, table.heads(name), rows[name], table.spans(name))
+    terminal.sentence(f"{table.legend(FORCES)}; {table.legend(OIL)}.")
+    if test.carries_gas:
+        terminal.show("", table, GASES)
+        terminal.sentence(f"{table.legend(GASES)}.")
+    for result in test.results:
+        if result.heat is not None:
+            show_film(terminal, result.heat, f"{result.cavitation}: the film when it is warm")
+        if result.stribeck is not None:
+            coefficient, speed = result.stribeck.least
+            minimum = f"the least coefficient of friction is {coefficient:.3g}, at {terminal.speeds.words(speed)}."
+            terminal.sentence(f"{result.cavitation}: {minimum}")
+    if test.test != "rotation":
+        terminal.result(LARGEST)
+    for result in test.results:
+        if result.problem:
+            terminal.result(f"{result.cavitation}: {result.status}: {result.problem}")
+    if not test.complete:
+        terminal.result("Interrupted: the other models were not computed.")
+
+
+def _test_document(test: KinematicTest, result: KinematicResult) -> dict[str, Any]:
+    """A result in JSON; null where there is no solution."""
+    from frbcli.bearing_tests.columns import STRIBECK, history_columns, result_columns
+    from frbcli.columns import document, named
+    from frbcli.scene.films import states_moment
+
+    moment = states_moment(test.case)
+    history = () if result.plan.test == "rotation" else named(history_columns(moment), "", attrgetter("history"))
+    stribeck = () if result.stribeck is None else named(STRIBECK, "", attrgetter("stribeck"))
+    row = document((*result_columns(moment, test.carries_gas), *history, *stribeck), result)
+    return row if result.heat is None else row | {"thermal": film_document(result.heat)}

@@ -30,7 +30,7 @@ from frbcli.case.run import speed_unit_of
 from frbcli.equilibrium.ring_speed import concentric_ratios
 from frbcli.errors import InputError
 from frbcli.plot.curves import Over, curves_figure, draw_curves
-from frbcli.plot.run.motion import draw_distances, draw_eccentricity, draw_largest
+from frbcli.plot.motion import draw_distances, draw_eccentricity, draw_largest
 from frbcli.plot.signals import (
     MICRO,
     bearing_of,

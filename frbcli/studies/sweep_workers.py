@@ -34,9 +34,9 @@ from frbcli.errors import InputError, NotConverged
 from frbcli.linear.stability import threshold_alone
 from frbcli.results.records import SPEED, WHOLE
 from frbcli.results.write import SWEEP_LOG, Unreadable, text_of, write
-from frbcli.runs.record.interrupt import deaf
+from frbcli.runs.interruption import deaf
 from frbcli.runs.run import runup
-from frbcli.studies.sweep.points import refused
+from frbcli.studies.sweep_points import refused
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

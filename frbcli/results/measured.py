@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 
 from frbcli.arrays import Array
 from frbcli.errors import InputError, printable
-from frbcli.results.measured.columns import LARGEST_FILE, Columns, is_interval, wrong_file
-from frbcli.results.measured.delimited import MOST_COLUMNS, DelimitedTable, NoTable, read_table, seconds
+from frbcli.results.delimited import MOST_COLUMNS, DelimitedTable, NoTable, read_table, seconds
+from frbcli.results.measured_columns import LARGEST_FILE, Columns, is_interval, wrong_file
 from frbcli.results.records import MOST_SAMPLES
 from frbcli.results.write import Unreadable, require_file
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.errors import FEW, InputError, did_you_mean, input_error, nearest, printable
-from frbcli.results.measured.delimited import UNITS, without_unit
+from frbcli.results.delimited import UNITS, without_unit
 from frbcli.results.records import LARGEST
 
 LARGEST_FILE = 1024**3  # bytes

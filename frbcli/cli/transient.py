@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options, wrapped
-from frbcli.cli.files import RUN_FILE, check_outputs, force_option, here, next_to
-from frbcli.cli.options import Command, gathered, look_options
+from frbcli.cli.options import RUN_FILE, Command, check_outputs, force_option, gathered, here, look_options, next_to
 from frbcli.cli.progress import Display, LONGEST_LEFT_s, computing, display, draw, picture_switch, progress_line
 from frbcli.columns import table_of
 from frbcli.errors import FrbError
@@ -128,7 +127,7 @@ def transient(command: str, run_case: Transient, case: Case, options: RunOptions
         }
     )
     if options.picture and len(run) > 1:
-        from frbcli.plot.run.summary import summary_figure
+        from frbcli.plot.summary import summary_figure
 
         draw(terminal, lambda: summary_figure(run), next_to(path, SUMMARY))
     interrupted = verified is not None and verified["status"] == "interrupted"

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.files import here
-from frbcli.cli.machines.static_tables import (
+from frbcli.cli.options import REST_OPTION, SPEED_OPTION, STIFFNESS_OPTION, Command, here, speeds_option
+from frbcli.cli.progress import OutputOptions, computing, outputs_options, picture_of
+from frbcli.cli.studies.static_tables import (
     heat_document,
     machine_document,
     reduction_document,
@@ -23,8 +24,6 @@ from frbcli.cli.machines.static_tables import (
     show_points,
     show_reduction,
 )
-from frbcli.cli.options import REST_OPTION, SPEED_OPTION, STIFFNESS_OPTION, Command, speeds_option
-from frbcli.cli.progress import OutputOptions, computing, outputs_options, picture_of
 from frbcli.columns import document, documents, table_of
 from frbcli.units import PER_MINUTE, SpeedUnit
 

@@ -11,16 +11,15 @@ import click
 
 from frbcli.arrays import Array
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.files import INPUT, here
-from frbcli.cli.machines.static_tables import (
+from frbcli.cli.options import INPUT, OPERATING_OPTION, Command, GradeOption, here, speeds_option
+from frbcli.cli.progress import OutputOptions, computing, outputs_options, picture_of
+from frbcli.cli.studies.static_tables import (
     machine_document,
     reduction_document,
     show_coefficient_error,
     show_heat,
     show_reduction,
 )
-from frbcli.cli.options import OPERATING_OPTION, Command, GradeOption, speeds_option
-from frbcli.cli.progress import OutputOptions, computing, outputs_options, picture_of
 from frbcli.errors import Fault, InputError
 from frbcli.units import SpeedUnit
 

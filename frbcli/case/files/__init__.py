@@ -1,1 +1,0 @@
-"""Files that a case names: their numbers take the place of the key `file`."""

@@ -1,1 +1,0 @@
-"""Case files: checked, listed, described to editors."""

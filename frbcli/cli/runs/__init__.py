@@ -1,1 +1,0 @@
-"""Run-up and run-down; pictures, tables and pages of a run."""

@@ -1,1 +1,0 @@
-"""Records of a run, and how it is resumed from them."""

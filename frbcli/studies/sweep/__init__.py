@@ -1,1 +1,0 @@
-"""Parameter studies: one case with many settings."""
