@@ -19,6 +19,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from paths import ROOT
+from resumed import assert_same
 
 from frbcli.cli.main import run as frb
 from frbcli.cli.progress import progress_line
@@ -55,13 +56,6 @@ def document(text: str) -> dict[str, Any]:
     assert list(found["error"]) == ERROR
     assert all(list(event) == EVENT for event in found["events"])
     return dict(found)
-
-
-def assert_same(run: Run, other: Run) -> None:
-    """Bit for bit, but for what the clock says."""
-    for name in run.signals:
-        np.testing.assert_array_equal(run[name], other[name], strict=True)
-    assert (run.status, run.t_end_s, run.events, run.error) == (other.status, other.t_end_s, other.events, other.error)
 
 
 # --- what is said where ---

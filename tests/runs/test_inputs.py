@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-import signal
 from pathlib import Path
 
 import numpy as np
 import pytest
+from resumed import assert_resumable
 
 import frbcli
 from frbcli.case.reading.load import load_case, load_case_text
@@ -15,7 +15,6 @@ from frbcli.case.reading.time_tables import inputs_of
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.static_machine import warm_machine
 from frbcli.errors import InputError
-from frbcli.runs import march
 from frbcli.runs.inputs import RunInputs
 from frbcli.runs.run import rundown, runup
 from frbcli.scene.machine.system import make_system
@@ -141,23 +140,9 @@ def test_films_settle_at_the_last_temperatures(tmp_path: Path) -> None:
     assert run.error["heat_balance_relative"] < 1e-9  # type: ignore[operator]
 
 
-def test_a_run_resumed_within_its_tables_is_bit_equal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(march, "BUDGET", 20)
+def test_a_run_resumed_within_its_tables_is_bit_equal(tmp_path: Path) -> None:
     tables = [supplied((0, "20 degC"), (0.05, "70 degC")), pressure((0, "1 bar"), (0.05, "3 bar"))]
-    case = machine(*HEAT, *tables, *at_speed(60.0, 0.05))
-    whole = runup(case, tmp_path / "whole.h5")
-    left = iter(range(3, -1, -1))
-
-    def stop(_: object) -> None:
-        if next(left, None) == 0:
-            signal.raise_signal(signal.SIGINT)
-
-    stopped = runup(case, tmp_path / "broken.h5", observe=stop)
-    assert stopped.status == "interrupted"
-    assert 0.0 < stopped.t_end_s < 0.05
-    resumed = runup(load_case_text(stopped.case_text, name=case.name), tmp_path / "broken.h5", resume=True)
-    for name in whole.signals:
-        np.testing.assert_array_equal(resumed[name], whole[name], strict=True)
+    assert_resumable(machine(*HEAT, *tables, *at_speed(60.0, 0.05)), tmp_path, 0.02)
 
 
 def test_an_input_is_a_table_of_the_case(tmp_path: Path) -> None:

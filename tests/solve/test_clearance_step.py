@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from flows import net_flow
+from resumed import assert_resumable
 
 import frbcli
 from frbcli.arrays import Array
@@ -119,24 +120,11 @@ def test_a_shell_that_closes_upon_the_journal_is_contact(model: str, tmp_path: P
     ],
     ids=["table", "co-simulation", "rings"],
 )
-def test_a_run_that_was_put_down_goes_on_with_the_same_clearance(name: str, settings: list[str]) -> None:
+def test_a_run_that_was_put_down_goes_on_with_the_same_clearance(
+    name: str, settings: list[str], tmp_path: Path
+) -> None:
     course = ["speed.duration=0.06s", "speed.from=20 Hz", "speed.to=21Hz", "output.step=0.1ms"]
-    case = load_case(name, [*course, *settings])
-    whole = under_way(case)
-    status, signals = finish(whole)
-    assert status == FINISHED
-    for until in (0.02, 0.03, 0.04):
-        march, found = under_way(case), []
-        while march.time < until:
-            found.append(march.chunk()[1])
-        again = under_way(case)
-        again.restore(march.snapshot())
-        assert again.time == march.time
-        status, rest = finish(again)
-        assert status == FINISHED
-        for signal, values in signals.items():
-            joined = np.concatenate([*(part[signal] for part in found), rest[signal]])
-            np.testing.assert_array_equal(joined, values, err_msg=signal)
+    assert_resumable(load_case(name, [*course, *settings]), tmp_path, 0.02, 0.03, 0.04)
 
 
 @pytest.mark.nightly  # co-simulation beside the coupled loop: test_cosimulation
