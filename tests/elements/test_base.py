@@ -15,8 +15,6 @@ import pytest
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
-from frbcli.cycles.limit_cycles import limit_cycles
-from frbcli.errors import InputError
 from frbcli.linear.response import response
 from frbcli.plot.waterfall import load_lines
 from frbcli.report.sketch import rotor_sketch
@@ -145,32 +143,3 @@ def test_the_sketch_shows_a_ground_that_moves() -> None:
     assert ">B1, B2, B3<" in drawing
     assert told.endswith("not directions: B a motion of the ground, numbered as in the case.")
     assert "Arrows" not in rotor_sketch(machine(RIGID, []))[1]
-
-
-FAULTS = {
-    "constant": ({"acceleration": [1.0, 0.0]}, "base.acceleration", "would not change"),
-    "no file": ({"file": "nowhere.csv"}, "base.file", "does not exist"),
-    "second of two": ([shaken(), {"order": 2.0}], "base.1.acceleration", "is missing"),
-}
-
-
-@pytest.mark.parametrize("given", FAULTS.values(), ids=FAULTS.keys())
-def test_bad_motions_of_the_ground_are_refused(given: tuple[Any, str, str]) -> None:
-    base, key, problem = given
-    with pytest.raises(InputError) as caught:
-        machine(RIGID, base)
-    (fault,) = caught.value.faults
-    assert (fault.key, problem in fault.problem, bool(fault.remedy)) == (key, True, True), fault
-
-
-def test_modes_without_masses_do_not_say_what_the_ground_moves() -> None:
-    with pytest.raises(InputError, match="masses, and the masses of the housing are unknown"):
-        machine(RIGID, shaken(), housing=MODES)
-
-
-def test_what_stands_on_a_ground_at_rest_refuses_it() -> None:
-    film = load_case("rigid", ["film.theory=short"]).with_settings({"base": shaken(speed="50 Hz")})
-    with pytest.raises(InputError, match="a frequency of its own"):
-        limit_cycles(film)
-    with pytest.raises(InputError, match="has no effect"):
-        load_case("bearing").with_settings({"base": shaken()})

@@ -11,30 +11,8 @@ import pytest
 import frbcli
 from frbcli.cli.main import run
 from frbcli.errors import InputError
-from frbcli.scene.gate.gate import faults
-from frbcli.scene.gate.rule import ALL
 
 SPEED = [2000.0]
-
-
-def faults_of(*settings: str) -> str:
-    with pytest.raises(InputError) as error:
-        frbcli.load_case("thrust", settings)
-    return str(error.value)
-
-
-@pytest.mark.parametrize(("setting", "words"), [
-    ("pads=5", "5 of 75 deg are 375 deg. With 5 pads write at most pad_angle = \"72 deg\""),
-    ("taper_angle=80 deg", "is 80 deg, longer than the pad of 75 deg"),
-    ("inner_radius=12 mm", "not below the outer radius of 11 mm"),
-    ("taper=-1 um", "must be greater than 0"),
-    ("side=both", "is missing; the gaps of pads on both sides follow from it"),
-    ("profile=bump", "is not known here"),
-])  # fmt: skip
-def test_faults_name_key_value_and_remedy(setting: str, words: str) -> None:
-    told = faults_of(f"thrust_bearing.0.{setting}")
-    assert "thrust_bearing" in told
-    assert words in told
 
 
 def test_a_collar_is_on_the_shaft() -> None:
@@ -80,12 +58,6 @@ def test_pads_on_both_sides_are_the_difference_of_loads_and_the_sum_of_all_else(
 def test_models_that_pads_do_not_have_are_refused() -> None:
     with pytest.raises(InputError, match="without oil fractions and history"):
         frbcli.thrust_sheet(frbcli.load_case("thrust", ["film.cavitation=elrod"]), [15e-6], SPEED)
-
-
-@pytest.mark.parametrize("analysis", ALL)
-def test_a_case_of_thrust_bearings_alone_has_no_lateral_motion(analysis: str) -> None:
-    found = faults(frbcli.load_case("thrust"), analysis)
-    assert any("thrust bearings alone" in fault.problem for fault in found)
 
 
 @pytest.mark.parametrize("words", [

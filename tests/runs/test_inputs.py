@@ -163,45 +163,6 @@ def test_an_input_is_a_table_of_the_case(tmp_path: Path) -> None:
     assert "3 rows of cold.csv" in decision.reason
 
 
-FAULTS = {
-    "falling": ([pressure((0, "1 bar"), (2, "3 bar"), (1, "3 bar"))], "do not rise: 1 s in row 3 after 2 s"),
-    "single": ([pressure((0, "1 bar"))], "at least two times"),
-    "unit": ([pressure((0, "1 bar"), (1, "3 mm"))], '"mm"'),
-    "not a number": (['bearing.supply.pressure=[["0 s", 1e5], ["1 s", nan]]'], "not a finite number"),
-    "below the air": ([pressure((0, "2 bar"), (20, "0.5 bar"))], "below the ambient pressure"),
-    "no list of pairs": (["bearing.supply.pressure=[1, 2]"], "no list of times with values"),
-    "no file": (['bearing.supply.pressure={ file = "none.csv" }'], "does not exist"),
-    "beside": (['bearing.supply.pressure={ file = "none.csv", unit = "bar" }'], "with other keys"),
-    "too hot": ([*HEAT, supplied((0, "20 degC"), (20, "400 degC"))], "not below thermal.hottest_film"),
-    "without heat": ([*HEAT, "thermal.model=none", supplied((0, "20 degC"), (20, "40 degC"))], "without heat"),
-    "pressure of the air": ([f"oil.ambient_pressure={points((0, '1 bar'), (20, '0.8 bar'))}"], "from one that stays"),
-    "cavitation pressure from a file": (['oil.cavitation_pressure={ file = "none.csv" }'], "from one that stays"),
-    "wall without heat": ([f"bearing.housing={points((0, '20 degC'), (20, '40 degC'))}"], "no effect without heat"),
-}
-
-
-@pytest.mark.parametrize(("settings", "told"), FAULTS.values(), ids=FAULTS)
-def test_bad_inputs_are_one_clear_fault(settings: list[str], told: str) -> None:
-    with pytest.raises(InputError) as error:
-        machine(*settings)
-    (fault,) = error.value.faults
-    assert told in fault.problem
-    assert fault.remedy
-
-
-REFUSED = {
-    "steps": (['bearing.clearance_steps=[{ time = "1 s", clearance = "40 um" }]'], "clearance_steps"),
-    "pressures of two kinds": (["oil.cavitation_pressure=0.5 bar"], "cavitation_pressure"),
-}
-
-
-@pytest.mark.parametrize(("settings", "told"), REFUSED.values(), ids=REFUSED)
-def test_what_has_one_pressure_refuses_a_table(settings: list[str], told: str) -> None:
-    with pytest.raises(InputError) as error:
-        make_plan(machine(pressure((0, "1 bar"), (20, "3 bar")), *settings))
-    assert any(told in fault.problem for fault in error.value.faults)
-
-
 def test_the_remedy_for_pressures_of_two_kinds_is_possible() -> None:
     case = machine(pressure((0, "1 bar"), (20, "3 bar")), "oil.cavitation_pressure=0.5 bar", "film.solution=cells")
     assert make_plan(case).form.by_cells

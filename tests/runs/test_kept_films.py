@@ -11,7 +11,7 @@ from resumed import assert_resumable
 
 from frbcli import load_case, make_plan, read_run, runup
 from frbcli.case.schema import Case
-from frbcli.errors import InputError, RunFileError
+from frbcli.errors import RunFileError
 from frbcli.film.cells.data import SHEARED
 from frbcli.plot.moving import MOMENTS, animate_films, film_moments_figure
 from frbcli.results.store import GAS, OIL, KeptFilm, Run, kept_film
@@ -97,17 +97,3 @@ def test_films_move_in_a_picture(kept: Run, tmp_path: Path) -> None:
         film_moments_figure(kept, from_time=0.032)
     with pytest.raises(RunFileError, match='has no film "outer"'):
         film_moments_figure(kept, "outer")
-
-
-@pytest.mark.parametrize(
-    ("settings", "told"),
-    [
-        (("film.cavitation=half-sommerfeld",), "asks for the oil of cells"),
-        (("film.cavitation=reynolds", "film.solution=cells"), "their model does not keep any"),
-        (('output.films={ from="2 s", to="1 s" }',), "is not after from"),
-        (('output.films={ from="2 s", to="3 s" }',), "is not before the end of the run"),
-    ],
-)
-def test_what_cannot_be_kept_is_refused(settings: tuple[str, ...], told: str) -> None:
-    with pytest.raises(InputError, match=told):
-        make_plan(load_case("rigid", [*SPEED, "rotor.unbalance=0", KEPT, *settings]))

@@ -220,18 +220,6 @@ def test_forces_by_the_velocities_of_both_journals(model: tuple[str, ...]) -> No
 # ------------------------------------------------------------------------------------------------------- and so on
 
 
-@pytest.mark.parametrize(("settings", "words"), [
-    (('bearing.inner.supply={kind="none"}', "bearing.inner.ends=oil-bath"), "no feed holes"),
-    (("bearing.inner.supply.on=journal",), "in the journal"),
-    (("bearing.inner.supply.axial_position=0.3",), "next to a central groove"),
-    (('bearing.outer.supply={kind="bores", count=2, diameter="2 mm", pressure="2 bar"}',), "which the feed holes"),
-    ((*AT_END, "bearing.inner.supply.axial_position=0.07", "bearing.outer.width=10 mm"), "out of the film"),
-])  # fmt: skip
-def test_what_cannot_be_coupled_is_said(settings: tuple[str, ...], words: str) -> None:
-    with pytest.raises(InputError, match=words):
-        make_plan(ringed(*settings))
-
-
 def test_coupled_films_have_no_coefficients_of_their_own() -> None:
     with pytest.raises(InputError, match="neither has coefficients"):
         stability(ringed(*AT_END, "film.cavitation=penalty"), [100.0])

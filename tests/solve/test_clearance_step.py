@@ -15,7 +15,6 @@ from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import resting_position
-from frbcli.errors import InputError
 from frbcli.film.cells.data import OIL
 from frbcli.rotor.loads import speed_profile
 from frbcli.runs.march import March
@@ -156,21 +155,3 @@ def test_the_case_in_the_file_is_the_case(tmp_path: Path) -> None:
     assert load_case_text(run.case_text) == case
     assert [step.clearance for step in case.bearings[0].clearance_steps] == [30e-6, 33e-6]  # type: ignore[union-attr]
     assert [event["t_s"] for event in run.events if event["kind"] == "clearance-step"] == [0.02, 0.03]
-
-
-@pytest.mark.parametrize(
-    ("settings", "said"),
-    [
-        ([step_to("2 mm")], "too large for a thin film"),
-        ([step_to("-2 um")], "greater than 0"),
-        (['bearing.clearance_steps=[{time="2s",clearance="30um"},{time="1s",clearance="33um"}]'], "not after the step"),
-    ],
-)
-def test_what_cannot_be(settings: list[str], said: str) -> None:
-    with pytest.raises(InputError, match=said):
-        make_plan(load_case("jeffcott", settings))
-
-
-def test_no_effect_on_kinematic_tests() -> None:
-    with pytest.raises(InputError, match="no effect"):
-        load_case("bearing", [step_to("40 um")])

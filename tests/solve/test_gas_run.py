@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from test_cells_run import Array, case_of, planned, run
 
-import frbcli
 from frbcli.case.schema import Case
 from frbcli.film.cells.balance.balances import GAS_IN, GAS_OUT, GAS_RELEASED
 from frbcli.film.cells.data import GAS, PASSED
@@ -112,12 +111,3 @@ def test_a_small_whirl_grows_as_the_linearised_film_says() -> None:
     place = system.rotor.journals[0] @ first_state(case.start, system, run_up_profile(case)).q
     expected = eigenvalue(system, place, 2.0 * np.pi * 100.0, seen)
     assert abs(seen - expected) < 2.5e-3 * abs(expected)
-
-
-def test_what_runs_do_not_follow_gas_in_is_refused_with_a_remedy() -> None:
-    for settings, told in (
-        (["film.coupling=co-simulation"], "film.coupling.*is not modelled with oil that carries free gas"),
-    ):
-        with pytest.raises(frbcli.InputError, match=told):
-            frbcli.make_plan(frbcli.load_case("rigid", ["film.cavitation=bubbly", *settings]))
-    frbcli.make_plan(frbcli.load_case("rigid", ["film.cavitation=bubbly"]))

@@ -14,7 +14,6 @@ import frbcli
 from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
-from frbcli.errors import InputError
 from frbcli.film.cells.balance.balances import CREATED
 from frbcli.film.cells.data import NOW, OIL, PASSED
 from frbcli.film.cells.film import Motion
@@ -142,19 +141,6 @@ def test_run_ups_are_those_of_quadratic_elements(what: str, tmp_path: Path) -> N
     found = frbcli.runup(case, tmp_path / "run.h5")
     assert found.status == "finished"
     assert found["eccentricity"][-1] == pytest.approx(float(row["eps_1s"]), rel=0.035 if "axial" in what else 0.01)
-
-
-@pytest.mark.parametrize(
-    ("name", "setting", "key"),
-    [
-        ("jeffcott", "film.grid=half-speed", "film.grid"),
-        ("jeffcott", "film.tilt=follows", "film.two-phase.form"),
-    ],
-)
-def test_what_the_published_form_cannot_do_is_refused(name: str, setting: str, key: str) -> None:
-    with pytest.raises(InputError) as refused:
-        make_plan(load_case(name, [*PUBLISHED, setting]))
-    assert key in [fault.key for fault in refused.value.faults]
 
 
 RINGED = ["film.two-phase.steepness=0.9", "accuracy.mesh=[4, 24]", "speed.from=100 Hz", "speed.to=101 Hz",
