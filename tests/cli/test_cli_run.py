@@ -86,27 +86,6 @@ def test_quiet_json_says_json_alone(capsys: pytest.CaptureFixture[str]) -> None:
     assert said.err == ""
 
 
-@pytest.mark.parametrize(
-    ("words", "reason"),
-    [
-        (["runup", "no-such-case"], "no-such-case"),
-        (["runup", *QUICK, "--set", "rotor.mass=-1 kg"], "rotor.mass"),
-        (["runup", *QUICK, "-o", "."], "has to end with .h5"),
-        (["rundown", *QUICK, "-o", "foreign.h5"], "not replaced"),
-        (["rundown", *QUICK, "-o", "foreign.h5", "--resume"], "not replaced"),
-        (["runup", *QUICK, "--set", "film.cavitation=elrod"], "not modelled in this version"),
-    ],
-)
-def test_wrong_input_is_exit_2(words: list[str], reason: str, capsys: pytest.CaptureFixture[str]) -> None:
-    Path("foreign.h5").write_text("years of work")
-    assert frb([*words, "--json"]) == 2
-    said = capsys.readouterr()
-    assert reason in said.err
-    assert json.loads(said.out)["status"] == "input-error"
-    assert os.listdir() == ["foreign.h5"]
-    assert Path("foreign.h5").read_text() == "years of work"
-
-
 # --- progress ---
 
 number = st.floats(allow_nan=True, allow_infinity=True)

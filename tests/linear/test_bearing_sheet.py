@@ -251,25 +251,6 @@ def test_a_sheet_fills_one_screen_unless_more_is_asked_for(capsys: pytest.Captur
     assert "--all" in short[-2] + short[-1]
 
 
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["bearing", "jeffcott", "--film", "inner"], "one film, without a name"),
-        (["bearing", "floating-ring", "--film", "iner"], "inner"),
-        (["bearing", "squeeze", "--speed", "20 Hz"], "motion.load"),
-        (["bearing", "jeffcott", "--csv", "nowhere/t.csv"], "does not exist"),
-        (["bearing", "jeffcott", "--over", "eccentricity", "--load", "3 N"], "no --load"),
-        (["bearing", "jeffcott", "--load", "-3 N"], "greater than 0"),
-    ],
-)
-def test_what_cannot_be_computed_is_said(
-    words: list[str], said: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert frb([*words, "--no-picture"]) == 2
-    assert said in capsys.readouterr().err
-
-
 WARM = [
     "film.cavitation=half-sommerfeld", "bearing.supply.pressure=2 bar", "oil.density=830 kg/m^3",
     "oil.heat_capacity=2100 J/(kg*K)", 'oil.viscosity={ grade = "SAE 10W-40" }', "thermal.model=lumped",

@@ -60,19 +60,6 @@ def test_models_that_pads_do_not_have_are_refused() -> None:
         frbcli.thrust_sheet(frbcli.load_case("thrust", ["film.cavitation=elrod"]), [15e-6], SPEED)
 
 
-@pytest.mark.parametrize("words", [
-    ["runup", "thrust", "-o", "x.h5"], ["bearing", "thrust"],
-    ["compare", "thrust", "--cavitation", "sommerfeld,reynolds"],
-    ["sweep", "thrust", "--set", "oil.viscosity=8 mPa*s,9 mPa*s"],
-])  # fmt: skip
-def test_commands_refuse_a_case_of_thrust_bearings_alone(
-    words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert run(words) == 2
-    assert "frb thrust" in " ".join(capsys.readouterr().err.split())
-
-
 def test_the_plan_of_a_rotor_says_that_its_thrust_bearing_is_left_out() -> None:
     thrust = ('thrust_bearing=[{side="right", inner_radius="5 mm", outer_radius="11 mm", pads=4, pad_angle="75 deg", '
               'taper_angle="50 deg", taper="20 um"}]')  # fmt: skip

@@ -218,18 +218,3 @@ def test_a_variant_that_ends_early_is_exit_3(capsys: pytest.CaptureFixture[str])
     text = capsys.readouterr().out
     assert [result["status"] for result in json.loads(said.out)["results"]] == ["finished", "contact"]
     assert "sommerfeld short: contact at" in text
-
-
-@pytest.mark.parametrize(
-    "words",
-    [
-        ["--test", "squeeze"],
-        ["--cavitation", "elrod"],
-        ["--cavitation", HALF],
-        ["-o", "picture.bmp"],
-        ["--theory", "short,finite", "--keep", str(Path(__file__))],
-    ],
-)
-def test_wrong_wishes_are_exit_2(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["compare", "jeffcott", *SETTINGS, *words, "--json"]) == 2
-    assert json.loads(capsys.readouterr().out)["status"] == "input-error"
