@@ -14,13 +14,12 @@ import numpy as np
 import pytest
 
 import frbcli
-from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
+from frbcli.case.reading.load import case_from_dict, load_case
 from frbcli.linear.response import response
 from frbcli.plot.waterfall import load_lines
 from frbcli.report.sketch import rotor_sketch
 from frbcli.runs.run import runup
 from frbcli.scene.machine.rotor import make_rotor
-from frbcli.scene.planning.plan import make_plan
 
 M, K, C, G = 6.0, 1e6, 300.0, 9.81  # kg; N/m and N s/m of one bearing; m/s^2
 SHELL, SPRING, DAMPER = 1.5, 4e6, 200.0  # of one support
@@ -119,13 +118,6 @@ def test_a_run_on_a_shaken_ground_has_the_motion_of_the_response(tmp_path: Path)
             expected = found.motion[0, number, 0]
             assert abs(real + 1j * imaginary - expected) < bound * abs(expected), (name, node)
         assert [line.name for line in load_lines(run)] == (["130 Hz"] if name == "harmonic" else [])
-
-
-def test_text_and_plan_of_a_shaken_ground() -> None:
-    case = machine(RIGID, shaken(speed="50 Hz"))
-    assert load_case_text(case.source_text, name="shaken") == case
-    told = [(each.value, each.reason) for each in make_plan(case).decisions if each.choice == "ground"]
-    assert told == [("2 m/s^2 in x, 0 m/s^2 in y", "order 2 of 50 Hz; displacements are those against the ground")]
 
 
 def test_the_sketch_shows_a_ground_that_moves() -> None:

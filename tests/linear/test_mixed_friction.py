@@ -117,13 +117,6 @@ def test_stiffness_is_the_slope_of_the_load_with_friction_and_film() -> None:
         np.testing.assert_allclose(slope, (ahead - behind) / (2 * step), rtol=1e-4, atol=1e-4 * abs(slope).max())
 
 
-def test_the_plan_tells_what_rough_surfaces_do() -> None:
-    (told,) = (decision for decision in make_plan(rigid()).decisions if decision.choice == "contact")
-    assert told.value == "rough, 0.4 um"
-    assert "below some 1.2 um" in told.reason
-    assert not any(decision.choice == "contact" for decision in make_plan(load_case("rigid")).decisions)
-
-
 HOT = "oil.viscosity={grade='SAE 10W-40'}", 'thermal={model="lumped", supply_temperature="70 degC"}'
 
 

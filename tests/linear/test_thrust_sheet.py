@@ -60,15 +60,6 @@ def test_models_that_pads_do_not_have_are_refused() -> None:
         frbcli.thrust_sheet(frbcli.load_case("thrust", ["film.cavitation=elrod"]), [15e-6], SPEED)
 
 
-def test_the_plan_of_a_rotor_says_that_its_thrust_bearing_is_left_out() -> None:
-    thrust = ('thrust_bearing=[{side="right", inner_radius="5 mm", outer_radius="11 mm", pads=4, pad_angle="75 deg", '
-              'taper_angle="50 deg", taper="20 um"}]')  # fmt: skip
-    plan = frbcli.make_plan(frbcli.load_case("jeffcott", [thrust]))
-    (told,) = [decision for decision in plan.decisions if decision.choice == "thrust bearing"]
-    assert told.value == "left out"
-    assert "the case has no axial.load" in told.reason
-
-
 KEYS = ("speed_Hz", "gap_m", "load_N", "torque_N_m", "power_W", "flow_inner_m3_s", "flow_outer_m3_s", "p_max_Pa",
         "stiffness_N_m", "damping_N_s_m", "tilt_stiffness_N_m", "tilt_damping_N_m_s", "temperature_K")  # fmt: skip
 

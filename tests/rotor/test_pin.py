@@ -152,9 +152,3 @@ def test_a_run_has_angle_and_torque_of_its_pin(tmp_path: Path) -> None:
     assert not any(event["kind"] == "touch" for event in other.events)
     with pytest.raises(FrbError, match="no ring with a pin"):
         quantity_figure([other], "pin")
-
-
-def test_the_plan_names_the_pin() -> None:
-    (line,) = (each for each in make_plan(ringed(pin())).decisions if each.choice == "pin")
-    assert line.value == "play 1.6 mm"
-    assert "5.73 deg to either side, then touches 1000 N/mm and 400 N*s/m" in line.reason

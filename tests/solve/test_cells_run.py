@@ -20,7 +20,6 @@ from frbcli.results.store import read_run
 from frbcli.runs.films import oil_defect
 from frbcli.runs.march import Progress, control_of
 from frbcli.runs.start import first_state, rotor_data
-from frbcli.scene.course import STAGES
 from frbcli.scene.machine.system import System, make_system, settled_share
 from frbcli.scene.planning.cell_choice import run_up_profile
 from frbcli.scene.planning.film_choice import Plan
@@ -154,17 +153,6 @@ def test_cells_are_solved_as_exactly_as_the_steps_deserve(cavitation: str, grid:
     (loose, few), (tight, many) = found(usual, settled_share(usual)), found(usual, 1e-5)
     assert few < (0.8 if grid == "fixed" else 0.9) * many  # in a grid that turns most corrections are of the motion
     assert np.abs(loose - exact).max() < 1.25 * np.abs(tight - exact).max()
-
-
-@pytest.mark.parametrize(("cavitation", "most"), [("two-phase", 2.6)])
-def test_films_of_rings_take_few_iterations(cavitation: str, most: float) -> None:
-    """Feed holes that turn with the ring pass the loaded part of the film, fronts cross the cells in each step."""
-    case = case_of("floating-ring", f"film.cavitation={cavitation}", "speed.from=300Hz", "speed.to=305Hz")
-    plan, system = planned(case, tolerance=2e-4)
-    _, state = run(case, plan, system)
-    steps = state.numbers[STEPS] + state.numbers[REJECTED]
-    assert state.numbers[REJECTED] < 0.05 * steps
-    assert state.numbers[SOLVES] / (steps * len(system.films.with_fields) * STAGES[plan.method]) < most
 
 
 def test_half_sommerfeld_on_cells_is_that_of_the_table() -> None:
