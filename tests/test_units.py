@@ -20,6 +20,15 @@ from frbcli.units import ANGLE, NUMBER, SPEED, TEMPERATURE_DIFFERENCE, ValueFaul
     ("text", "unit", "si"),
     [
         ("35 um", "m", 35e-6),
+        ("4 mil", "m", 101.6e-6),
+        ("35 micron", "m", 35e-6),
+        ("35 um pp", "m", 35e-6),
+        ("2 sec", "s", 2.0),
+        ("150 krpm", SPEED, 2500.0),
+        ("3 g-mm", "kg*m", 3e-6),
+        ("3 bara", "Pa", 3e5),
+        ("3 bar abs", "Pa", 3e5),
+        *((f"1200 {name}", SPEED, 20.0) for name in ("min-1", "r/min", "rev/min", "cpm", "1/min", "U/min")),
         ("35 µm", "m", 35e-6),  # micro sign
         ("35 μm", "m", 35e-6),  # Greek mu
         ("20mm", "m", 0.02),

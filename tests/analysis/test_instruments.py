@@ -282,28 +282,6 @@ def test_an_acceleration_is_no_displacement(tmp_path: Path) -> None:
             measured_run(path, Measurement(name, time="t", speed="n"))
 
 
-@pytest.mark.parametrize("name", ["rpm", "min-1", "r/min", "rev/min", "cpm", "1/min", "U/min"])
-def test_a_rotor_speed_per_minute_has_many_names(name: str) -> None:
-    assert quantity(f"1200 {name}", SPEED) == pytest.approx(20.0, rel=1e-14)
-
-
-@pytest.mark.parametrize(
-    ("text", "unit", "si"),
-    [
-        ("4 mil", "m", 101.6e-6),
-        ("35 micron", "m", 35e-6),
-        ("35 um pp", "m", 35e-6),
-        ("2 sec", "s", 2.0),
-        ("150 krpm", SPEED, 2500.0),
-        ("3 g-mm", "kg*m", 3e-6),
-        ("3 bara", "Pa", 3e5),
-        ("3 bar abs", "Pa", 3e5),
-    ],
-)
-def test_units_as_engineers_write_them(text: str, unit: str, si: float) -> None:
-    assert quantity(text, unit) == pytest.approx(si, rel=1e-14)
-
-
 @pytest.mark.parametrize(
     ("text", "unit", "said"),
     [

@@ -101,15 +101,3 @@ def test_squeeze_of_a_full_film_has_its_closed_form() -> None:
 def test_short_tests_are_of_films_that_clip_a_pressure() -> None:
     with pytest.raises(InputError, match="short is for half-sommerfeld"):
         rotation(case("eccentricity=0.5, speed='20 Hz'"), ["two-phase"])
-
-
-@pytest.mark.parametrize(
-    ("motion", "settings", "said"),
-    [
-        (", tilt=['0.1 mrad', '0 mrad']", [], "same along the bearing"),
-        ("", ["oil.viscosity={grade='SAE 10W-40'}", "thermal.supply_temperature=50 degC"], "heat a test"),
-    ],
-)  # fmt: skip
-def test_what_a_short_test_does_not_know(motion: str, settings: list[str], said: str) -> None:
-    with pytest.raises(InputError, match=said):
-        rotation(case("eccentricity=0.5, angle='-60 deg', speed='20 Hz'" + motion, *settings))

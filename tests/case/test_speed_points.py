@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -89,28 +88,6 @@ def test_a_file_of_speeds_has_units(tmp_path: Path) -> None:
     case = machine(tmp_path, file="speed.csv")
     np.testing.assert_allclose(case.speed.times, (0.0, 0.1, 0.3))
     np.testing.assert_allclose(case.speed.speeds, (0.0, 30.0, 10.0))
-
-
-FAULTS: dict[str, tuple[dict[str, Any], str, str]] = {
-    "late": ({"points": [["1 s", "0 Hz"], ["2 s", "9 Hz"]]}, "speed.points", "begins at 1 s"),
-    "falling": ({"points": [["0 s", "0 Hz"], ["2 s", "9 Hz"], ["1 s", "9 Hz"]]}, "speed.points", "row 3"),
-    "negative": ({"points": [["0 s", "5 Hz"], ["2 s", "-9 Hz"]]}, "speed.points", "-9 Hz in row 2"),
-    "still": ({"points": [["0 s", "0 Hz"], ["2 s", "0 Hz"]]}, "speed.points", "no speed above 0"),
-    "unit": ({"points": [["0 s", "5 Hz"], ["2 s", "9 N"]]}, "speed.points", "has a value that"),
-    "shape": ({"points": ["0 s", "5 Hz"]}, "speed.points", "no list"),
-    "beside": ({"points": POINTS, "to": "90 Hz"}, "speed.to", "with points"),
-    "file of no name": ({"file": 5}, "speed.file", "no list"),
-    "times alone": ({"times": ["0 s", "1 s"]}, "speed.times", "as many times as speeds"),
-}
-
-
-@pytest.mark.parametrize("given", FAULTS.values(), ids=FAULTS.keys())
-def test_bad_points_are_refused(given: tuple[dict[str, Any], str, str]) -> None:
-    speed, key, problem = given
-    with pytest.raises(InputError) as caught:
-        machine(**speed)
-    (fault,) = caught.value.faults
-    assert (fault.key, problem in fault.problem, bool(fault.remedy)) == (key, True, True), fault
 
 
 def test_what_needs_a_ramp_refuses_points(tmp_path: Path) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -15,8 +13,6 @@ from frbcli.case.schema import json_schema
 from frbcli.case.supplies import SUPPLIES, OilSupply, Outline, kind_of
 from frbcli.scene.films import film_places, film_section, is_plain
 
-PACKAGE = Path(frbcli.__file__).parent
-ASKED = re.compile(r"isinstance\([a-z_.]*supply|getattr\([a-z_.]*supply|supply\.kind (?:==|!=|in|not in)")
 AMBIENT = 1e5
 each_supply = pytest.mark.parametrize("row", SUPPLIES, ids=kind_of)
 
@@ -73,8 +69,3 @@ def test_half_of_the_width_is_solved_where_all_openings_lie_in_its_middle(
     found = Rows().openings(12.5e-3, 20e-3, "free-to-air", AMBIENT)
     assert (found.copies, found.far) == (copies, "symmetry" if copies == 2 else "free-to-air")
     assert tuple(hole.axial for hole in found.holes) == places
-
-
-def test_nobody_asks_for_the_kind_of_a_supply() -> None:
-    files = [file for file in PACKAGE.rglob("*.py") if "supplies" not in file.parts]
-    assert [file.name for file in files if ASKED.search(file.read_text(encoding="utf-8"))] == []

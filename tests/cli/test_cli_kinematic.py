@@ -69,36 +69,6 @@ def test_errors_in_the_table_refer_to_its_largest_force(capsys: pytest.CaptureFi
     assert [float(row[-1]) for row in rows] == [float(f"{error:.0e}") for error in expected]
 
 
-@pytest.mark.parametrize(
-    ("arguments", "key"),
-    [
-        (("bearing", "--cavitation", "nonsense"), "--cavitation"),
-        (("bearing", "--set", "motion={eccentricity=1, speed='20 Hz'}"), "motion.eccentricity"),
-        (("bearing", "--set", "bearing.supply={kind='none'}"), "bearing.supply.kind"),
-        (("bearing", "--cavitation", "two-phase", "--set", "film.theory=short"), "film.theory"),
-        (("bearing", "--set", "bearing.supply.axial_position=0.3"), "bearing.supply.axial_position"),
-        (
-            ("bearing", "--set", "bearing.supply={kind='bores', count=40, diameter='2.5 mm', pressure='2 bar'}"),
-            "bearing.supply.diameter",
-        ),
-        (
-            ("bearing", "--set", "bearing.supply={kind='bores', count=2, diameter='2 mm', axial_position=0.01, "
-                                 "pressure='2 bar'}"),
-            "bearing.supply.axial_position",
-        ),
-        (("jeffcott",), "motion"),
-    ],
-)  # fmt: skip
-def test_wrong_input_names_its_key(arguments: tuple[str, ...], key: str, capsys: pytest.CaptureFixture[str]) -> None:
-    found = document(capsys, "rotation", *arguments, code=2)
-    assert key in {fault["key"] for fault in found["faults"]}
-
-
-def test_run_up_of_a_kinematic_case_says_what_is_missing(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    found = document(capsys, "runup", "bearing", "-o", str(tmp_path / "run.h5"), code=2)
-    assert {fault["key"] for fault in found["faults"]} <= {"rotor", "speed"}
-
-
 def test_check_plans_a_kinematic_case(capsys: pytest.CaptureFixture[str]) -> None:
     found = document(capsys, "check", "squeeze")
     assert {"gap", "film", "cells", "steps"} <= {decision["choice"] for decision in found["plan"]}

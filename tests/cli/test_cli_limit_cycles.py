@@ -16,17 +16,6 @@ SHORT = ("--set", "film.theory=short")
 AROUND = ("--set", "speed.from=165 Hz", "--set", "speed.to=185 Hz")  # Hopf point and fold of the Jeffcott rotor
 
 
-@pytest.mark.parametrize(
-    ("settings", "told"),
-    [
-        (["speed.to=0 Hz"], "no range of speeds"),
-    ],
-)
-def test_what_has_no_limit_cycles_is_told(settings: list[str], told: str) -> None:
-    with pytest.raises(frbcli.InputError, match=told):
-        frbcli.limit_cycles(frbcli.load_case("jeffcott", settings))
-
-
 @pytest.mark.nightly  # three diagrams, 14 s
 def test_a_diagram_over_a_number_of_the_case_meets_that_over_the_speed() -> None:
     """Rigid rotor at w = 2.72: Hopf point and fold over the viscosity lie where the diagrams over the speed of these

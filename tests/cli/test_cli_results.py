@@ -85,14 +85,6 @@ def test_waterfall_draws_amplitudes_by_order(run_file: Path, capsys: pytest.Capt
         assert frb(["waterfall", str(run_file), "--order", "1", "--quiet", *words]) == 0
 
 
-@pytest.mark.parametrize(
-    "words", [["--order", "1", "--window", "1 s"], ["--order", "1", "--cascade"], ["--order", "one"], ["--order", "0"]]
-)
-def test_orders_that_there_are_not_are_wrong_input(run_file: Path, words: list[str]) -> None:
-    assert frb(["waterfall", str(run_file), *words]) == 2
-    assert not run_file.with_name("run-orders.png").exists()
-
-
 @pytest.mark.parametrize("what", ["eccentricity", "orbit", "displacement", "summary"])
 def test_plot_draws_each_picture(run_file: Path, what: str) -> None:
     assert frb(["plot", str(run_file), "--what", what]) == 0
@@ -153,39 +145,3 @@ def test_parquet_needs_its_extra(
 def test_parquet_has_the_signals(run_file: Path) -> None:
     assert frb(["export", str(run_file), "--format", "parquet"]) == 0
     assert list(pd.read_parquet(run_file.with_suffix(".parquet")).columns) == COLUMNS
-
-
-@pytest.mark.parametrize(
-    "words",
-    [
-        ["waterfall", "missing.h5"],
-        ["waterfall", "RUN", "--signal", "ring"],
-        ["waterfall", "RUN", "--window", "5 s"],
-        ["waterfall", "RUN", "--window", "5 kg"],
-        ["waterfall", "RUN", "-o", "picture.bmp"],
-        ["waterfall", "RUN", "-o", "nowhere/picture.png"],
-        ["plot", "RUN", "--from", "3 s"],
-        ["plot", "RUN", "--what", "orbit", "--from", "3 s", "--to", "2 s"],
-        ["plot", "RUN", "RUN", "--what", "summary"],
-        ["plot", "RUN", "--what", "summary", "--from", "0.1 s"],
-        ["plot", "RUN", "TEXT"],
-        ["plot"],
-        ["export", "TEXT"],
-        ["export", "RUN", "-o", "RUN"],
-        ["export", "RUN", "-o", "-", "--json"],
-        ["export", "RUN", "-o", "-", "--format", "mat"],
-        ["export", "RUN", "--format", "xls"],
-    ],
-    ids=" ".join,
-)
-def test_wrong_input_ends_with_two_and_one_document(
-    run_file: Path, made: bytes, words: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(run_file.parent)
-    Path("text.h5").write_text("time_s,speed_Hz\n")
-    words = [{"RUN": run_file.name, "TEXT": "text.h5"}.get(word, word) for word in words]
-    assert frb([*words, *([] if "--json" in words else ["--json"])]) == 2
-    said = capsys.readouterr()
-    assert json.loads(said.out)["status"] == "input-error"
-    assert said.err != ""
-    assert run_file.read_bytes() == made

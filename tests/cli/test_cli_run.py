@@ -19,6 +19,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from paths import ROOT
+from resumed import assert_same
 
 from frbcli.cli.main import run as frb
 from frbcli.cli.progress import progress_line
@@ -57,13 +58,6 @@ def document(text: str) -> dict[str, Any]:
     return dict(found)
 
 
-def assert_same(run: Run, other: Run) -> None:
-    """Bit for bit, but for what the clock says."""
-    for name in run.signals:
-        np.testing.assert_array_equal(run[name], other[name], strict=True)
-    assert (run.status, run.t_end_s, run.events, run.error) == (other.status, other.t_end_s, other.events, other.error)
-
-
 # --- what is said where ---
 
 
@@ -90,27 +84,6 @@ def test_quiet_json_says_json_alone(capsys: pytest.CaptureFixture[str]) -> None:
     said = capsys.readouterr()
     assert document(said.out)["command"] == "rundown"
     assert said.err == ""
-
-
-@pytest.mark.parametrize(
-    ("words", "reason"),
-    [
-        (["runup", "no-such-case"], "no-such-case"),
-        (["runup", *QUICK, "--set", "rotor.mass=-1 kg"], "rotor.mass"),
-        (["runup", *QUICK, "-o", "."], "has to end with .h5"),
-        (["rundown", *QUICK, "-o", "foreign.h5"], "not replaced"),
-        (["rundown", *QUICK, "-o", "foreign.h5", "--resume"], "not replaced"),
-        (["runup", *QUICK, "--set", "film.cavitation=elrod"], "not modelled in this version"),
-    ],
-)
-def test_wrong_input_is_exit_2(words: list[str], reason: str, capsys: pytest.CaptureFixture[str]) -> None:
-    Path("foreign.h5").write_text("years of work")
-    assert frb([*words, "--json"]) == 2
-    said = capsys.readouterr()
-    assert reason in said.err
-    assert json.loads(said.out)["status"] == "input-error"
-    assert os.listdir() == ["foreign.h5"]
-    assert Path("foreign.h5").read_text() == "years of work"
 
 
 # --- progress ---

@@ -58,26 +58,6 @@ def test_command_speaks_in_eighty_columns(
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        ["--speed", "0 Hz"],
-        ["--speed", "nan"],
-        ["--speed", "fast"],
-        ["--speed", "25 kg"],
-        ["-o", "picture.bmp"],
-        ["-o", "a.png", "--no-picture"],
-    ],
-)
-def test_command_refuses_what_makes_no_sense(
-    words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert frb(["stability", "jeffcott", "--json", *words]) == 2
-    assert json.loads(capsys.readouterr().out)["status"] == "input-error"
-    assert list(tmp_path.iterdir()) == []
-
-
 def one_speed(case: str, speed_Hz: float) -> list[str]:
     """Words that ask for the stability of a case at one speed and no other one."""
     settings = ("film.cavitation=half-sommerfeld", f"speed.from={speed_Hz} Hz", f"speed.to={speed_Hz} Hz")

@@ -60,9 +60,9 @@ def test_each_line_of_the_table_is_true(
     line: Line, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     words = shlex.split(line.words)
-    if line.words not in (*TEXTS, *LONG):
-        before = shutil.copytree(folder, tmp_path / "before")
-        monkeypatch.chdir(before)
+    there = sorted(file.name for file in folder.iterdir())
+    if line.words not in (*TEXTS, *LONG):  # wrong input leaves the folder as it is
+        monkeypatch.chdir(folder if line.code == 2 else shutil.copytree(folder, tmp_path / "before"))
         assert run([*words, "--json"]) == line.code
         said = capsys.readouterr()
         assert isinstance(json.loads(said.out), dict)
@@ -73,6 +73,7 @@ def test_each_line_of_the_table_is_true(
     assert_says(said.out, line.out)
     assert_says(PROGRESS.sub("", said.err), line.err)
     assert not [word for word in line.err if word in said.out]
+    assert line.code != 2 or sorted(file.name for file in folder.iterdir()) == there
 
 
 def test_the_table_has_every_command_and_what_makes_it_fail() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from pages.textbook_bearings import FORMS, TABLES
+from pages.textbook_bearings import FORMS, TABLES, nicholas
 from pages.textbook_rotors import ROTORS
 from pages.textbook_rows import Bench
 from pages.textbooks_page import PAGE, written
@@ -20,14 +20,12 @@ def hold(bench: Bench) -> None:
         assert row.given in page
 
 
-@pytest.mark.parametrize("bench", ROTORS + FORMS, ids=lambda bench: bench.__name__)
-def test_rotors_and_short_films_of_textbooks(bench: Bench) -> None:
-    hold(bench)
+QUICK = (*ROTORS, *FORMS, nicholas)  # the others are tables of films of finite length
+LONG = [pytest.param(bench, marks=pytest.mark.nightly) for bench in TABLES if bench not in QUICK]
 
 
-@pytest.mark.nightly  # films of finite length
-@pytest.mark.parametrize("bench", TABLES, ids=lambda bench: bench.__name__)
-def test_tables_of_bearings(bench: Bench) -> None:
+@pytest.mark.parametrize("bench", [*QUICK, *LONG], ids=lambda bench: bench.__name__)
+def test_figures_of_textbooks(bench: Bench) -> None:
     hold(bench)
 
 

@@ -50,19 +50,6 @@ def agrees(row: str, measured: float, tolerance: float | None = None) -> bool:
     return measured == pytest.approx(PRINTED[row]["printed"], rel=tolerance or PRINTED[row]["tolerance"])
 
 
-@pytest.mark.parametrize(("case", "expected"), validate.THRESHOLDS_Hz.items())
-def test_linear_threshold(case: str, expected: float) -> None:
-    assert measures.threshold_Hz(load_case(case)) == pytest.approx(expected, rel=5e-3)
-
-
-@pytest.mark.parametrize("theory", ["finite", "short"])
-@pytest.mark.parametrize("clearance", ["35", "40"])
-def test_resting_positions(clearance: str, theory: str) -> None:
-    relative, degrees = measures.worst_resting_position(clearance, theory)
-    assert 0.0 < relative < 3e-3
-    assert 0.0 < degrees < 0.3
-
-
 @pytest.mark.parametrize("supply", ["none", "circumferential-groove"])
 def test_film_forces(supply: str) -> None:
     assert 0.0 < measures.worst_film_force(supply) < 3e-3

@@ -14,15 +14,12 @@ import numpy as np
 import pytest
 
 import frbcli
-from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
-from frbcli.cycles.limit_cycles import limit_cycles
-from frbcli.errors import InputError
+from frbcli.case.reading.load import case_from_dict, load_case
 from frbcli.linear.response import response
 from frbcli.plot.waterfall import load_lines
 from frbcli.report.sketch import rotor_sketch
 from frbcli.runs.run import runup
 from frbcli.scene.machine.rotor import make_rotor
-from frbcli.scene.planning.plan import make_plan
 
 M, K, C, G = 6.0, 1e6, 300.0, 9.81  # kg; N/m and N s/m of one bearing; m/s^2
 SHELL, SPRING, DAMPER = 1.5, 4e6, 200.0  # of one support
@@ -123,13 +120,6 @@ def test_a_run_on_a_shaken_ground_has_the_motion_of_the_response(tmp_path: Path)
         assert [line.name for line in load_lines(run)] == (["130 Hz"] if name == "harmonic" else [])
 
 
-def test_text_and_plan_of_a_shaken_ground() -> None:
-    case = machine(RIGID, shaken(speed="50 Hz"))
-    assert load_case_text(case.source_text, name="shaken") == case
-    told = [(each.value, each.reason) for each in make_plan(case).decisions if each.choice == "ground"]
-    assert told == [("2 m/s^2 in x, 0 m/s^2 in y", "order 2 of 50 Hz; displacements are those against the ground")]
-
-
 def test_the_sketch_shows_a_ground_that_moves() -> None:
     """One line of ground more than that of a machine at rest, as wide as the drawing, below all other parts."""
     still = rotor_sketch(machine(RIGID, []))[0]
@@ -145,32 +135,3 @@ def test_the_sketch_shows_a_ground_that_moves() -> None:
     assert ">B1, B2, B3<" in drawing
     assert told.endswith("not directions: B a motion of the ground, numbered as in the case.")
     assert "Arrows" not in rotor_sketch(machine(RIGID, []))[1]
-
-
-FAULTS = {
-    "constant": ({"acceleration": [1.0, 0.0]}, "base.acceleration", "would not change"),
-    "no file": ({"file": "nowhere.csv"}, "base.file", "does not exist"),
-    "second of two": ([shaken(), {"order": 2.0}], "base.1.acceleration", "is missing"),
-}
-
-
-@pytest.mark.parametrize("given", FAULTS.values(), ids=FAULTS.keys())
-def test_bad_motions_of_the_ground_are_refused(given: tuple[Any, str, str]) -> None:
-    base, key, problem = given
-    with pytest.raises(InputError) as caught:
-        machine(RIGID, base)
-    (fault,) = caught.value.faults
-    assert (fault.key, problem in fault.problem, bool(fault.remedy)) == (key, True, True), fault
-
-
-def test_modes_without_masses_do_not_say_what_the_ground_moves() -> None:
-    with pytest.raises(InputError, match="masses, and the masses of the housing are unknown"):
-        machine(RIGID, shaken(), housing=MODES)
-
-
-def test_what_stands_on_a_ground_at_rest_refuses_it() -> None:
-    film = load_case("rigid", ["film.theory=short"]).with_settings({"base": shaken(speed="50 Hz")})
-    with pytest.raises(InputError, match="a frequency of its own"):
-        limit_cycles(film)
-    with pytest.raises(InputError, match="has no effect"):
-        load_case("bearing").with_settings({"base": shaken()})

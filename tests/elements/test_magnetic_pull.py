@@ -118,17 +118,3 @@ def test_films_are_no_stiffer_than_rigid_ones() -> None:
 def test_natural_frequencies_on_springs_leave_it_out_and_say_so() -> None:
     with pytest.raises(InputError, match="adds to the bearings"):
         natural_modes(load_case("turbocharger-car", ['magnetic_pull=[{ at = "disk_turbine", pull = "1e5 N/m" }]']), 1e7)
-
-
-@pytest.mark.parametrize(("text", "key"), [
-    ('at = "stator", pull = "1e5 N/m"', "magnetic_pull.0.at"),
-    ('at = "journal", pull = "-1e5 N/m"', "magnetic_pull.0.pull"),
-    ('at = "journal", pull = "0 N/m"', "magnetic_pull.0.pull"),
-    ('at = "journal"', "magnetic_pull.0.pull"),
-    ('at = "journal", pull = "1e5 N/m", stator = "wall"', "magnetic_pull.0.stator"),
-    ('at = "journal", pull = "1e5 N/m", stator = "journal"', "magnetic_pull.0.stator"),
-])  # fmt: skip
-def test_faults(text: str, key: str) -> None:
-    with pytest.raises(InputError) as raised:
-        load_case("rigid", [f"magnetic_pull=[{{ {text} }}]"])
-    assert [fault.key for fault in raised.value.faults] == [key]

@@ -16,14 +16,11 @@ import frbcli
 from frbcli.case.reading.load import case_from_dict
 from frbcli.case.surroundings import Spring
 from frbcli.elements.spring import STICKS, SpringForce
-from frbcli.errors import InputError
 from frbcli.linear.stability import stability
 from frbcli.rotor.loads import speed_profile
 from frbcli.rotor.port import ANSWER, MOTION, XX
 from frbcli.rotor.port_function import evaluate
 from frbcli.runs.run import runup
-from frbcli.scene.gate.gate import faults
-from frbcli.scene.gate.rule import CYCLES, RUN
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 
@@ -221,25 +218,3 @@ def test_a_spring_between_two_places_acts_on_both() -> None:
     del data["spring"]
     stiffer = stability(case_from_dict(data, "stiffer"), [100.0]).points[0].eigenvalues
     np.testing.assert_allclose(np.sort(both.imag), np.sort(stiffer.imag), rtol=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("given", "key"),
-    [
-        ({"stiffness": "1e6 N/m", "between": ["journal", "disk"]}, "between"),
-        ({"at": "nowhere", "stiffness": "1e6 N/m"}, "at"),
-        ({"gap": "20 um"}, "stiffness"),
-        ({"stiffness": "1e6 N/m", "friction": 0.1}, "friction"),
-        ({"stiffness": "1e6 N/m", "gap": "20 um", "radius": "10 mm"}, "radius"),
-    ],
-)
-def test_springs_that_make_no_sense_are_refused(given: dict[str, Any], key: str) -> None:
-    with pytest.raises(InputError) as caught:
-        sprung(given)
-    assert [fault.key for fault in caught.value.faults] == [f"spring.0.{key}"]
-
-
-def test_analyses_without_nonlinear_forces_say_so() -> None:
-    case = sprung(stop())
-    assert "spring.0" in {fault.key for fault in faults(case, CYCLES)}
-    assert not faults(case, RUN)

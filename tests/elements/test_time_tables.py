@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import signal
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from resumed import assert_resumable
 from scipy.io import savemat, wavfile
 from scipy.signal import lsim
 
@@ -18,8 +17,6 @@ from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
 from frbcli.cycles.limit_cycles import limit_cycles
 from frbcli.errors import InputError
 from frbcli.linear.response import response
-from frbcli.runs import march
-from frbcli.runs.march import Progress
 from frbcli.runs.run import rundown, runup
 from frbcli.scene.planning.plan import make_plan
 
@@ -61,31 +58,11 @@ def test_a_force_with_kinks_is_followed_to_the_order_of_the_method(tmp_path: Pat
     assert errors[1] < errors[0] / 4.0**3.5
 
 
-def interrupt_after(calls: int) -> Callable[[Progress], None]:
-    left = iter(range(calls - 1, -1, -1))
-
-    def observe(_: Progress) -> None:
-        if next(left, None) == 0:
-            signal.raise_signal(signal.SIGINT)
-
-    return observe
-
-
-def test_a_run_resumed_within_a_table_is_bit_equal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_resumed_within_a_table_is_bit_equal(tmp_path: Path) -> None:
     """Also when the file is gone: the run has its numbers."""
-    monkeypatch.setattr(march, "BUDGET", 20)
     case, _ = random_force(tmp_path)
-    whole = runup(case, tmp_path / "whole.h5")
-    broken = tmp_path / "broken.h5"
-    stopped = runup(case, broken, observe=interrupt_after(3))
-    assert stopped.status == "interrupted"
-    assert 0.0 < stopped.t_end_s < 0.1
     (tmp_path / "force.csv").unlink()
-    again = load_case_text(whole.case_text, name="table")
-    assert again.same_run(case)
-    resumed = runup(again, broken, resume=True)
-    for name in whole.signals:
-        np.testing.assert_array_equal(resumed[name], whole[name], strict=True)
+    assert_resumable(case, tmp_path, 0.03)
 
 
 def test_files_of_all_kinds_give_the_same_numbers(tmp_path: Path) -> None:

@@ -28,7 +28,7 @@ from frbcli.film.roughness.contact import ElasticShell
 from frbcli.plot.machine.bearing import bearing_figure
 from frbcli.rotor.loads import speed_profile
 from frbcli.scene.gate.gate import faults
-from frbcli.scene.gate.rule import BEARING, SPEED_CYCLES, STABILITY
+from frbcli.scene.gate.rule import STABILITY
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.stage.forces import feel, push_back
@@ -200,28 +200,6 @@ def test_an_elastic_shell_at_rest_is_that_of_the_time_loop() -> None:
             np.testing.assert_allclose(found.by_displacement[:, column], (ahead - behind) / 2e-10, 1e-4, 100.0)
             ahead, behind = (shell.force(film, place, rate + s * 1e-6 * unit, clearance).force for s in (1.0, -1.0))
             np.testing.assert_allclose(found.by_velocity[:, column], (ahead - behind) / 2e-6, rtol=1e-6, atol=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("settings", "analysis", "key", "problem"),
-    [
-        ((BLOCKED,), STABILITY, "bearing.ring.spin", "the ring sinks until it touches its shell"),
-        ((pin(),), BEARING, "bearing.pin", "the ring sinks until it touches its shell"),
-        ((BLOCKED, ELASTIC, "film.cavitation=two-phase"), STABILITY, "bearing.ring.spin", "no rest is the only one"),
-        (
-            (BLOCKED, ELASTIC, 'bearing.outer.supply={kind="none"}'), BEARING, "bearing.ring.spin",
-            "cavitates as soon as it moves",
-        ),
-        ((BLOCKED, ELASTIC), SPEED_CYCLES, "bearing.ring.spin", "stay within the gaps"),
-        ((pin(), "rotor.gravity=0"), SPEED_CYCLES, "bearing.pin", "corners"),
-    ],
-)  # fmt: skip
-def test_what_has_no_rest_is_refused_with_the_physical_reason(
-    settings: tuple[str, ...], analysis: str, key: str, problem: str
-) -> None:
-    told = [fault for fault in faults(ringed(*settings), analysis) if fault.key == key]
-    assert [problem in fault.problem for fault in told] == [True]
-    assert not faults(ringed(settings[0], ELASTIC), STABILITY)
 
 
 def test_the_contact_that_the_error_of_a_sinking_ring_names_holds_it() -> None:

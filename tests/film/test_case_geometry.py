@@ -9,7 +9,6 @@ import pytest
 
 from frbcli import load_case
 from frbcli.cli.main import run
-from frbcli.errors import InputError
 from frbcli.film.gap import LobedShell, reynolds_number, ring_rotation_strains, shaft_rotation_strain
 from frbcli.materials import BRASS, STEEL
 from frbcli.scene.machine.findings import operating_points
@@ -59,34 +58,6 @@ def test_lobes_of_a_case_reach_the_section() -> None:
     assert plan.section.clearance == pytest.approx(40e-6)  # that of the assembled bearing
     assert not plan.modal  # the modal film knows a plain gap only
     assert "lobes" in {decision.choice for decision in plan.decisions}
-
-
-@pytest.mark.parametrize(
-    ("setting", "key"),
-    [
-        ("bearing.lobes={count=3, preload=1}", "bearing.lobes.preload"),
-        ("bearing.lobes={count=1, preload=0.5}", "bearing.lobes.count"),
-        ("bearing.profile=[['0 deg', '40 um'], ['90 deg', '39 um']]", "bearing.profile"),  # below the clearance
-        ("bearing.profile=[['90 deg', '40 um'], ['0 deg', '45 um']]", "bearing.profile"),
-        ("bearing.supply={kind='bores', count=6, diameter='2 mm', pressure='2 bar', ramp='-1 s'}",
-         "bearing.supply.ramp"),
-        ("bearing.supply={kind='axial-grooves', count=3, opening_angle='120 deg', pressure='2 bar'}",
-         "bearing.supply.opening_angle"),
-        ("bearing.supply={kind='axial-grooves', count=2, opening_angle='180 deg', pressure='2 bar'}",
-         "bearing.supply.opening_angle"),
-        ("bearing={kind='single-film', width='20 mm', diameter='25 mm', clearance='40 um', "
-         "lobes={count=3, preload=0.5}, "
-         "supply={kind='bores', count=6, diameter='2 mm', pressure='2 bar', on='journal'}}", "bearing.lobes"),
-        ("bearing.supply={kind='bores', count=6, diameter='2 mm', pressure='2 bar', on='journal'}",
-         "bearing.supply.on"),
-        ("motion.eccentricity=1", "motion.eccentricity"),
-        ("bearing.supply={kind='none'}", "bearing.supply.kind"),
-    ],
-)  # fmt: skip
-def test_geometry_that_cannot_be_is_named_by_its_key(setting: str, key: str) -> None:
-    with pytest.raises(InputError) as raised:
-        plan_of(setting)
-    assert key in {fault.key for fault in raised.value.faults}
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,6 @@ from helpers.films import AMBIENT, PLAIN, SUPPLIED
 
 from frbcli.bearing_tests.kinematic import rotation
 from frbcli.case.reading.load import load_case
-from frbcli.errors import InputError
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.cells.balance.side_flow import outflow
 from frbcli.film.cells.film import Motion, VolumeFilm
@@ -23,8 +22,6 @@ from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.end_flow import end_flow, make_end_flow
 from frbcli.film.rectangles.film import direct_force, evaluate, make_film
 from frbcli.scene.films import make_law
-from frbcli.scene.gate.gate import faults
-from frbcli.scene.gate.rule import RUN
 
 MESH, FINE = Mesh(6, 96), Mesh(12, 192)
 WIDE = replace(PLAIN, width=30e-3, bearing_width=30e-3)
@@ -194,25 +191,3 @@ def test_every_law_on_cells_takes_sealed_ends(law: str) -> None:
     assert abs(none.oil.ends_m3_s) < 1e-5 * opened.oil.ends_m3_s
     if law_named(law).keeps_oil:
         assert tenth.oil.defect_relative < 1e-8
-
-
-@pytest.mark.parametrize(
-    ("settings", "key", "remedy"),
-    [
-        (["film.theory=short", "bearing.supply.pressure=2 bar"], "bearing.ends", "finite"),
-        (["film.cavitation=reynolds", "bearing.supply={kind=\"none\"}", "bearing.ends.sealed=0.001"],
-         "bearing.ends", "at least 0.01"),
-    ],
-)  # fmt: skip
-def test_what_is_not_solved_is_refused(settings: list[str], key: str, remedy: str) -> None:
-    case = load_case("rigid", ["bearing.ends={sealed=0.4}", *settings])
-    found = [fault for fault in faults(case, RUN) if fault.key == key]
-    assert len(found) == 1
-    assert remedy in found[0].remedy
-
-
-@pytest.mark.parametrize("share", ["-0.1", "1.2", "nan", ])
-def test_a_share_is_a_number_from_0_to_1(share: str) -> None:
-    with pytest.raises(InputError) as raised:
-        load_case("rigid", [f"bearing.ends={{sealed={share}}}"])
-    assert [fault.key for fault in raised.value.faults] == ["bearing.ends.sealed"]

@@ -90,25 +90,6 @@ def assert_coefficients(state: FilmState, row: Row, load: float, clearance: floa
     assert np.abs(b - given).max() < share * np.abs(given).max()
 
 
-@pytest.mark.parametrize(("clearance_mil", "eccentricity"), [(1.8, 0.03), (2.0, 0.04)])
-def test_the_threshold_of_nicholas_barrett_and_leader(clearance_mil: float, eccentricity: float) -> None:
-    """J. Mech. Design 102, 1980, bearings A: two axial grooves of 20 degrees, 1 x 1 inch, 66.278 N, 8000 1/min. A rigid
-    rotor on a film of these coefficients whirls above 2.1 sqrt(g / C). The viscosity, which is not printed, follows
-    from the Sommerfeld numbers of all bearings there, 7.60 microreyn; figures as in petrobras/ross."""
-    clearance, load, speed = 25.4e-6 * clearance_mil, 66.278, 8000.0 / 60.0
-    text = CASE.format(
-        viscosity=52.4, width=25.4, diameter=25.4, clearance=1e6 * clearance, supply=grooves(2, 90, 20), load=load
-    )
-    state = bearing_sheet(load_case_text(text.replace("50 Hz", f"{speed!r} Hz"))).points[0]
-    k, b = state.stiffness, state.damping
-    assert k is not None
-    assert b is not None
-    still = (k[0, 0] * b[1, 1] + k[1, 1] * b[0, 0] - k[0, 1] * b[1, 0] - k[1, 0] * b[0, 1]) / np.trace(b)
-    whirl = np.linalg.det(k - still * np.eye(2)) / np.linalg.det(b) / (2.0 * math.pi * speed) ** 2
-    assert state.eccentricity == pytest.approx(eccentricity, abs=5e-3)
-    assert math.sqrt(still * clearance / load / whirl) == pytest.approx(2.1, abs=0.05)
-
-
 @pytest.fixture(scope="module")
 def plain() -> BearingSheet:
     text = CASE.format(viscosity=10, width=10, diameter=20, clearance=20, supply=NO_SUPPLY, load=30)
@@ -268,25 +249,6 @@ def test_a_sheet_fills_one_screen_unless_more_is_asked_for(capsys: pytest.Captur
         assert any(words in line for line in everything)
         assert any(words in line for line in one)
     assert "--all" in short[-2] + short[-1]
-
-
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (["bearing", "jeffcott", "--film", "inner"], "one film, without a name"),
-        (["bearing", "floating-ring", "--film", "iner"], "inner"),
-        (["bearing", "squeeze", "--speed", "20 Hz"], "motion.load"),
-        (["bearing", "jeffcott", "--csv", "nowhere/t.csv"], "does not exist"),
-        (["bearing", "jeffcott", "--over", "eccentricity", "--load", "3 N"], "no --load"),
-        (["bearing", "jeffcott", "--load", "-3 N"], "greater than 0"),
-    ],
-)
-def test_what_cannot_be_computed_is_said(
-    words: list[str], said: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert frb([*words, "--no-picture"]) == 2
-    assert said in capsys.readouterr().err
 
 
 WARM = [

@@ -10,16 +10,10 @@ import pytest
 from frbcli import bearing_sheet, load_case, rotation, sommerfeld_chart
 from frbcli.linear.sheets.film_state import FilmState
 from frbcli.linear.stability import stability_points
-from frbcli.scene.gate.gate import faults
-from frbcli.scene.gate.rule import RUN, STABILITY
 
 SPEED, CLEARANCE, WIDTH, MRAD = 50.0, 35e-6, 0.02, 0.5
 SHELL = 'bearing.misalignment=["{} mrad", "{} mrad"]'
 FINITE = "film.theory=finite"
-SINGLE_FILM = 'kind="single-film", width="5 mm", diameter="7 mm", clearance="15 um", misalignment=["1 mrad", "0 mrad"]'
-SHAFT = f'bearing=[{{position="42 mm", {SINGLE_FILM}}}, {{position="74 mm", {SINGLE_FILM}}}]'
-
-
 def at_rest(*settings: str) -> FilmState:
     (point,) = bearing_sheet(load_case("jeffcott", [FINITE, *settings]), [SPEED]).points
     assert not point.problem
@@ -82,20 +76,3 @@ def test_a_bearing_alone_has_a_chart_until_an_end_touches() -> None:
     assert not low.problem
     assert abs(low.load[0]) < 1e-6 * abs(low.load[1])
     assert "touches its shell at an end" in high.problem
-
-
-@pytest.mark.parametrize(
-    ("case", "settings", "analysis", "told"),
-    [
-        ("jeffcott", [SHELL.format(1, 0), "film.coupling=co-simulation"], RUN, 'Write coupling = "auto".'),
-        ("jeffcott", [SHELL.format(4, 0)], STABILITY, "Write less than 3.5 mrad."),
-        ("jeffcott", [SHELL.format(1, 0), "film.theory=short"], STABILITY, 'Write theory = "finite".'),
-        ("jeffcott", [SHELL.format(1, 0), "film.cavitation=penalty"], STABILITY, "Take half-sommerfeld or reynolds."),
-        ("turbocharger-car", [SHAFT], STABILITY, 'Write film.tilt = "follows"'),
-    ],
-)
-def test_what_is_not_modelled_is_refused_with_a_remedy(
-    case: str, settings: list[str], analysis: str, told: str
-) -> None:
-    found = faults(load_case(case, settings), analysis)
-    assert any(told in fault.remedy for fault in found)

@@ -14,12 +14,11 @@ from frbcli.case.schema import Case
 from frbcli.equilibrium.dynamic_films import dynamic_film
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.static_machine import StaticMachines, warm_machine
-from frbcli.errors import InputError
 from frbcli.film.roughness.plain import plain_touch
 from frbcli.linear.sheets.bearing import bearing_sheet
 from frbcli.linear.sheets.film_state import FilmState, MixedFriction
-from frbcli.scene.gate.gate import faults, require
-from frbcli.scene.gate.rule import BEARING, SPEED_CYCLES, STABILITY
+from frbcli.scene.gate.gate import faults
+from frbcli.scene.gate.rule import STABILITY
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 
@@ -118,41 +117,7 @@ def test_stiffness_is_the_slope_of_the_load_with_friction_and_film() -> None:
         np.testing.assert_allclose(slope, (ahead - behind) / (2 * step), rtol=1e-4, atol=1e-4 * abs(slope).max())
 
 
-@pytest.mark.parametrize(
-    ("settings", "key", "problem"),
-    [
-        (("contact.roughness=5 um", "contact.summit_density=1e9 1/m^2"), "contact.roughness", "meet all around"),
-        (("contact.mean_height=32 um",), "contact.mean_height", "meet all around"),
-        (("bearing.lobes={count=3, preload=0.5}",), "bearing.lobes", "plain cylinder"),
-        (("contact.flow_factors=true", "film.solution=table"), "film.solution", "flow factors change with the gap"),
-        (
-            ("contact.flow_factors=true", "contact.journal_roughness=0.4 um",
-             'bearing.supply={kind="bores", count=6, diameter="2 mm", pressure="2 bar", on="journal"}'),
-            "contact.journal_roughness", "openings at rest",
-        ),
-        (("film.coupling=co-simulation",), "film.coupling", "too stiff"),
-    ],
-)
-def test_what_rough_surfaces_are_not_modelled_with(settings: tuple[str, ...], key: str, problem: str) -> None:
-    with pytest.raises(InputError) as caught:
-        make_plan(rigid(*settings))
-    faults = {fault.key: fault.problem for fault in caught.value.faults}
-    assert problem in faults[key]
-
-
-def test_the_plan_tells_what_rough_surfaces_do() -> None:
-    (told,) = (decision for decision in make_plan(rigid()).decisions if decision.choice == "contact")
-    assert told.value == "rough, 0.4 um"
-    assert "below some 1.2 um" in told.reason
-    assert not any(decision.choice == "contact" for decision in make_plan(load_case("rigid")).decisions)
-
-
 HOT = "oil.viscosity={grade='SAE 10W-40'}", 'thermal={model="lumped", supply_temperature="70 degC"}'
-
-
-def test_heat_in_cycles_does_not_know_of_friction() -> None:
-    with pytest.raises(InputError, match="makes heat by friction"):
-        require(rigid(*HOT), SPEED_CYCLES)
 
 
 def test_friction_heats_a_film_at_rest() -> None:
@@ -177,11 +142,6 @@ def test_a_sheet_has_the_friction_that_holds_a_ring() -> None:
     moment = inner.clearance * (inner.displacement[0] * inner.load[1] - inner.displacement[1] * inner.load[0])
     assert abs(moment) > 0.2 * abs(inner.torque)
     assert outer.torque + (moment - inner.torque) == pytest.approx(0.0, abs=0.01 * abs(outer.torque))
-
-
-def test_rough_shells_are_in_line() -> None:
-    with pytest.raises(InputError, match="same along the axis"):
-        require(rigid('bearing.misalignment=["0.1 mrad", "0 mrad"]'), BEARING)
 
 
 def test_oil_and_summits_answer_beside_each_other() -> None:

@@ -11,39 +11,8 @@ import pytest
 import frbcli
 from frbcli.cli.main import run
 from frbcli.errors import InputError
-from frbcli.scene.gate.gate import faults
-from frbcli.scene.gate.rule import ALL
 
 SPEED = [2000.0]
-
-
-def faults_of(*settings: str) -> str:
-    with pytest.raises(InputError) as error:
-        frbcli.load_case("thrust", settings)
-    return str(error.value)
-
-
-@pytest.mark.parametrize(("setting", "words"), [
-    ("pads=5", "5 of 75 deg are 375 deg. With 5 pads write at most pad_angle = \"72 deg\""),
-    ("taper_angle=80 deg", "is 80 deg, longer than the pad of 75 deg"),
-    ("inner_radius=12 mm", "not below the outer radius of 11 mm"),
-    ("taper=-1 um", "must be greater than 0"),
-    ("side=both", "is missing; the gaps of pads on both sides follow from it"),
-    ("profile=bump", "is not known here"),
-])  # fmt: skip
-def test_faults_name_key_value_and_remedy(setting: str, words: str) -> None:
-    told = faults_of(f"thrust_bearing.0.{setting}")
-    assert "thrust_bearing" in told
-    assert words in told
-
-
-def test_a_collar_is_on_the_shaft() -> None:
-    bearing = ('thrust_bearing=[{{side="right", inner_radius="5 mm", outer_radius="11 mm", pads=4, '
-               'pad_angle="75 deg", taper_angle="50 deg", taper="20 um"{}}}]')  # fmt: skip
-    frbcli.load_case("turbocharger-car", [bearing.format(', position="20 mm"')])
-    for position, words in ((', position="5 m"', "not on the shaft of"), ("", "position: is missing")):
-        with pytest.raises(InputError, match=words):
-            frbcli.load_case("turbocharger-car", [bearing.format(position)])
 
 
 def test_a_load_is_that_of_the_gap_found_for_it() -> None:
@@ -80,34 +49,6 @@ def test_pads_on_both_sides_are_the_difference_of_loads_and_the_sum_of_all_else(
 def test_models_that_pads_do_not_have_are_refused() -> None:
     with pytest.raises(InputError, match="without oil fractions and history"):
         frbcli.thrust_sheet(frbcli.load_case("thrust", ["film.cavitation=elrod"]), [15e-6], SPEED)
-
-
-@pytest.mark.parametrize("analysis", ALL)
-def test_a_case_of_thrust_bearings_alone_has_no_lateral_motion(analysis: str) -> None:
-    found = faults(frbcli.load_case("thrust"), analysis)
-    assert any("thrust bearings alone" in fault.problem for fault in found)
-
-
-@pytest.mark.parametrize("words", [
-    ["runup", "thrust", "-o", "x.h5"], ["bearing", "thrust"],
-    ["compare", "thrust", "--cavitation", "sommerfeld,reynolds"],
-    ["sweep", "thrust", "--set", "oil.viscosity=8 mPa*s,9 mPa*s"],
-])  # fmt: skip
-def test_commands_refuse_a_case_of_thrust_bearings_alone(
-    words: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert run(words) == 2
-    assert "frb thrust" in " ".join(capsys.readouterr().err.split())
-
-
-def test_the_plan_of_a_rotor_says_that_its_thrust_bearing_is_left_out() -> None:
-    thrust = ('thrust_bearing=[{side="right", inner_radius="5 mm", outer_radius="11 mm", pads=4, pad_angle="75 deg", '
-              'taper_angle="50 deg", taper="20 um"}]')  # fmt: skip
-    plan = frbcli.make_plan(frbcli.load_case("jeffcott", [thrust]))
-    (told,) = [decision for decision in plan.decisions if decision.choice == "thrust bearing"]
-    assert told.value == "left out"
-    assert "the case has no axial.load" in told.reason
 
 
 KEYS = ("speed_Hz", "gap_m", "load_N", "torque_N_m", "power_W", "flow_inner_m3_s", "flow_outer_m3_s", "p_max_Pa",

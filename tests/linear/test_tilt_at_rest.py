@@ -210,23 +210,6 @@ def test_shells_of_a_housing_tilt_with_it() -> None:
     assert inner[:, 2:] == pytest.approx(0.0, abs=1e-12)
 
 
-REFUSED = {
-    "channels": ("turbocharger-car", ("bearing.0.channels=coupled",), "bearing.0.channels"),
-    "a rotor in its plane": ("jeffcott", (), "rotor.kind"),
-    "a law that follows": ("", ("film.cavitation=penalty",), "film.cavitation"),
-    "a short film": ("", ("film.theory=short",), "film.theory"),
-}
-
-
-@pytest.mark.parametrize(("name", "settings", "key"), REFUSED.values(), ids=REFUSED)
-def test_what_does_not_tilt_is_refused(name: str, settings: tuple[str, ...], key: str) -> None:
-    more = ("film.tilt=follows", *settings)
-    case = load_case(name, list(more)) if name else rigid_shaft(*more)
-    with pytest.raises(InputError) as refused:
-        frbcli.stability(case, [100.0])
-    assert key in [fault.key for fault in refused.value.faults]
-
-
 def sheet_of(*more: str) -> tuple[FilmState, FilmState]:
     """The films of both bearings of a rigid shaft at its speed."""
     one, other = frbcli.bearing_sheet(rigid_shaft(*more), [SPEED]).points

@@ -8,7 +8,6 @@ import pytest
 from paths import DOCS
 
 from frbcli.case.reading.load import load_case, load_case_text
-from frbcli.errors import InputError
 from frbcli.materials import (
     OILS,
     SOLIDS,
@@ -122,23 +121,3 @@ def test_density_of_a_grade_is_that_at_its_temperature_unless_given() -> None:
     case = load_case_text(text, [GRADE, "oil.temperature=86 degC"])
     assert case.oil.density == pytest.approx(870.0 / (1.0 + 7.0e-4 * 71.0))
     assert load_case("jeffcott", [GRADE, "oil.temperature=86 degC", "oil.density=900 kg/m^3"]).oil.density == 900.0
-
-
-@pytest.mark.parametrize(
-    ("settings", "key", "words"),
-    [
-        ([GRADE], "oil.temperature", "grade"),
-        (["oil.viscosity={ grade = 'SAE 10W45' }", "oil.temperature=350"], "oil.viscosity.grade", "SAE 10W-40"),
-        (["oil.viscosity={}", "oil.temperature=350"], "oil.viscosity.grade", "missing"),
-        (["oil.shear_factor=0.8"], "oil.shear_factor", "constant"),
-        ([GRADE, "oil.temperature=-150 degC"], "oil.temperature", "viscosity"),
-        ([GRADE, "oil.temperature=350", "oil.vogel={ eta_0 = 1e-4, A = 900, C = -178 }"], "oil.vogel", "second"),
-        (["oil.heat_capacity=2 kg"], "oil.heat_capacity", "J/(kg*K)"),
-    ],
-)
-def test_faults_of_a_grade(settings: list[str], key: str, words: str) -> None:
-    with pytest.raises(InputError) as raised:
-        load_case("jeffcott", settings)
-    faults = {fault.key: f"{fault.problem} {fault.remedy}" for fault in raised.value.faults}
-    assert list(faults) == [key]
-    assert words in faults[key]

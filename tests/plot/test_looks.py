@@ -57,12 +57,6 @@ def test_a_picture_has_its_size_and_resolution(tmp_path: Path) -> None:
     picture_texts.seen.clear()  # so small a picture has no room for its legend
 
 
-@pytest.mark.parametrize("words", [["--xlim", "5,2"], ["--ylim", "a,b"], ["--dpi", "1"], ["--size", "3"]])
-def test_wrong_looks_are_refused(words: list[str]) -> None:
-    done = CliRunner().invoke(frb, ["stability", "jeffcott", *words])
-    assert done.exit_code == 2
-
-
 def test_speeds_are_told_per_minute(run: Run) -> None:
     figure = fit(eccentricity_figure([run], over="speed"), x_limits=(6000.0, 12000.0), rpm=True)
     (axes,) = figure.axes

@@ -19,11 +19,9 @@ from series_rotors import HEAVY
 import frbcli
 from frbcli.arrays import Array
 from frbcli.case.reading.load import case_from_dict, load_case
-from frbcli.errors import InputError
 from frbcli.linear.response import Response, response
 from frbcli.rotor.assembly import held_rotor
 from frbcli.scene.machine.rotor import make_rotor
-from frbcli.scene.planning.plan import make_plan
 
 TURN = 2.0 * math.pi
 M, C, D, STIFF = 1.0, 1e6, 40.0, 1e11  # kg, N/m, N s/m: 159 Hz and a damping ratio of 0.02; N/m of a bearing
@@ -181,31 +179,3 @@ def test_a_bent_rotor_in_films_runs_as_its_linear_response(tmp_path: Path) -> No
     for axis, of in (("x", 0), ("y", 1)):
         seen = 2.0 * np.mean(run[f"disk_{axis}_m"][late][:-1] * turn)
         assert seen == pytest.approx(found.motion[0, found.points.index("disk"), of], rel=2e-3)
-
-
-@pytest.mark.parametrize(
-    ("case", "settings", "fault"),
-    [
-        ("jeffcott", ["rotor.bow_phase=10 deg"], "there is no bow"),
-        ("jeffcott", ['bow=[{position="10 mm", offset="10 um"}]'], "does not go with a jeffcott rotor"),
-        ("turbocharger-heavy", ['bow=[{position="900 mm", offset="10 um"}]'], "not on the shaft"),
-        ("turbocharger-heavy", ['bow=[{position="80 mm", offset="10 um"}]'], "straight line"),
-        (
-            "turbocharger-heavy",
-            ['bow=[{position="100 mm", offset="10 um"}, {position="100.1 mm", offset="12 um"}]'],
-            "within a thousandth",
-        ),
-    ],
-)
-def test_a_bow_that_is_none_is_refused(case: str, settings: list[str], fault: str) -> None:
-    with pytest.raises(InputError, match=fault):
-        load_case(case, settings)
-
-
-def test_the_plan_tells_the_bow_and_the_loss() -> None:
-    case = jeffcott(loss={"time": "0.5 s", "unbalance": "10 g*mm", "phase": "90 deg"})
-    told = {made.choice: (str(made.value), made.reason) for made in make_plan(case).decisions}
-    assert told["bow"][0].startswith("10 ")
-    assert "also slowly" in told["bow"][1]
-    assert "from 0.5 s" in told["loss"][0]
-    assert not {"bow", "loss"} & {made.choice for made in make_plan(load_case("jeffcott")).decisions}

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from resumed import assert_resumable
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from series_rotors import HEAVY
@@ -20,13 +21,8 @@ from frbcli.case.reading.load import case_from_dict, load_case
 from frbcli.errors import InputError
 from frbcli.linear.response import response
 from frbcli.rotor.assembly import LinearRotor
-from frbcli.runs.march import March
 from frbcli.scene.changes import after_losses, case_at
 from frbcli.scene.machine.rotor import make_rotor
-from frbcli.scene.machine.system import make_segments
-from frbcli.scene.planning.cell_choice import run_up_profile
-from frbcli.scene.planning.plan import make_plan
-from frbcli.solve.state import FINISHED, RUNNING
 
 TURN = 2.0 * math.pi
 M, C, D = 1.0, 1e6, 40.0  # kg, N/m, N s/m: 159 Hz and a damping ratio of 0.02
@@ -172,25 +168,9 @@ def test_journals_in_films_come_to_the_orbit_of_the_whole_unbalance(tmp_path: Pa
     assert np.abs(lost["eccentricity"] - none["eccentricity"])[late].max() > 0.02
 
 
-def test_a_run_that_goes_on_from_a_checkpoint_is_the_same_run() -> None:
-    case = load_case("jeffcott", [*FILMS, "speed.duration=0.15s", ONE_MORE])
-    plan = make_plan(case)
-
-    def march() -> March:
-        return March(case, plan, make_segments(case, plan), run_up_profile(case))
-
-    first, status, kept = march(), RUNNING, []
-    while status == RUNNING:
-        kept.append({name: part.copy() for name, part in first.snapshot().items()})
-        status, _ = first.chunk()
-    assert status == FINISHED
-    late = [one for one in kept if one["numbers"][0] >= 0.1]
-    for checkpoint in (kept[len(kept) // 3], late[0]):
-        other, status = march(), RUNNING
-        other.restore(checkpoint)
-        while status == RUNNING:
-            status, _ = other.chunk()
-        np.testing.assert_array_equal(other.snapshot()["q"], first.snapshot()["q"])
+def test_a_run_that_goes_on_from_a_checkpoint_is_the_same_run(tmp_path: Path) -> None:
+    """Before the loss and after it."""
+    assert_resumable(load_case("jeffcott", [*FILMS, "speed.duration=0.15s", ONE_MORE]), tmp_path, 0.05, 0.1)
 
 
 def test_the_shipped_turbine_comes_to_a_larger_orbit(tmp_path: Path) -> None:

@@ -13,11 +13,9 @@ from marches import march, start
 import frbcli
 from frbcli.case.schema import Case
 from frbcli.elements.pin import pin_torque
-from frbcli.errors import FrbError, InputError
+from frbcli.errors import FrbError
 from frbcli.plot.motion import quantity_figure
 from frbcli.rotor.loads import speed_profile
-from frbcli.scene.gate.gate import faults
-from frbcli.scene.gate.rule import BEARING, SPEED_CYCLES, STABILITY
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.ring_spin import DAMPING, PLAY, STIFFNESS, pinned
@@ -154,38 +152,3 @@ def test_a_run_has_angle_and_torque_of_its_pin(tmp_path: Path) -> None:
     assert not any(event["kind"] == "touch" for event in other.events)
     with pytest.raises(FrbError, match="no ring with a pin"):
         quantity_figure([other], "pin")
-
-
-def test_the_plan_names_the_pin() -> None:
-    (line,) = (each for each in make_plan(ringed(pin())).decisions if each.choice == "pin")
-    assert line.value == "play 1.6 mm"
-    assert "5.73 deg to either side, then touches 1000 N/mm and 400 N*s/m" in line.reason
-
-
-@pytest.mark.parametrize(
-    ("settings", "key", "problem"),
-    [
-        (['bearing.ring.spin="blocked"'], "bearing.pin", "has no effect"),
-        (["bearing.pin.radius=5 mm"], "bearing.pin.radius", "the ring lies between 12.5 mm and 20 mm"),
-        (["bearing.pin.play=-1 mm"], "bearing.pin.play", "at least 0"),
-    ],
-)
-def test_faults_of_a_pin(settings: list[str], key: str, problem: str) -> None:
-    with pytest.raises(InputError) as refused:
-        ringed(pin(), *settings)
-    (fault,) = refused.value.faults
-    assert fault.key == key
-    assert problem in fault.problem
-
-
-@pytest.mark.parametrize(
-    ("analysis", "setting", "key"),
-    [
-        (STABILITY, "rotor.gravity=9.81", "bearing.pin"),
-        (BEARING, "rotor.gravity=9.81", "bearing.pin"),
-        (SPEED_CYCLES, "film.cavitation=half-sommerfeld", "bearing.pin"),
-    ],
-)
-def test_what_does_not_follow_a_pin_is_refused(analysis: str, setting: str, key: str) -> None:
-    assert key in [fault.key for fault in faults(ringed(pin(), setting), analysis)]
-    assert key not in [fault.key for fault in faults(ringed(setting), analysis)]

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-import signal
 from pathlib import Path
 
 import numpy as np
 import pytest
+from resumed import assert_resumable
 
 import frbcli
 from frbcli.case.reading.load import load_case, load_case_text
@@ -15,7 +15,6 @@ from frbcli.case.reading.time_tables import inputs_of
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.static_machine import warm_machine
 from frbcli.errors import InputError
-from frbcli.runs import march
 from frbcli.runs.inputs import RunInputs
 from frbcli.runs.run import rundown, runup
 from frbcli.scene.machine.system import make_system
@@ -141,23 +140,9 @@ def test_films_settle_at_the_last_temperatures(tmp_path: Path) -> None:
     assert run.error["heat_balance_relative"] < 1e-9  # type: ignore[operator]
 
 
-def test_a_run_resumed_within_its_tables_is_bit_equal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(march, "BUDGET", 20)
+def test_a_run_resumed_within_its_tables_is_bit_equal(tmp_path: Path) -> None:
     tables = [supplied((0, "20 degC"), (0.05, "70 degC")), pressure((0, "1 bar"), (0.05, "3 bar"))]
-    case = machine(*HEAT, *tables, *at_speed(60.0, 0.05))
-    whole = runup(case, tmp_path / "whole.h5")
-    left = iter(range(3, -1, -1))
-
-    def stop(_: object) -> None:
-        if next(left, None) == 0:
-            signal.raise_signal(signal.SIGINT)
-
-    stopped = runup(case, tmp_path / "broken.h5", observe=stop)
-    assert stopped.status == "interrupted"
-    assert 0.0 < stopped.t_end_s < 0.05
-    resumed = runup(load_case_text(stopped.case_text, name=case.name), tmp_path / "broken.h5", resume=True)
-    for name in whole.signals:
-        np.testing.assert_array_equal(resumed[name], whole[name], strict=True)
+    assert_resumable(machine(*HEAT, *tables, *at_speed(60.0, 0.05)), tmp_path, 0.02)
 
 
 def test_an_input_is_a_table_of_the_case(tmp_path: Path) -> None:
@@ -176,45 +161,6 @@ def test_an_input_is_a_table_of_the_case(tmp_path: Path) -> None:
     decision = next(each for each in decisions if each.choice == "input")
     assert decision.value == "thermal.supply_temperature: 20 degC to 65 degC"
     assert "3 rows of cold.csv" in decision.reason
-
-
-FAULTS = {
-    "falling": ([pressure((0, "1 bar"), (2, "3 bar"), (1, "3 bar"))], "do not rise: 1 s in row 3 after 2 s"),
-    "single": ([pressure((0, "1 bar"))], "at least two times"),
-    "unit": ([pressure((0, "1 bar"), (1, "3 mm"))], '"mm"'),
-    "not a number": (['bearing.supply.pressure=[["0 s", 1e5], ["1 s", nan]]'], "not a finite number"),
-    "below the air": ([pressure((0, "2 bar"), (20, "0.5 bar"))], "below the ambient pressure"),
-    "no list of pairs": (["bearing.supply.pressure=[1, 2]"], "no list of times with values"),
-    "no file": (['bearing.supply.pressure={ file = "none.csv" }'], "does not exist"),
-    "beside": (['bearing.supply.pressure={ file = "none.csv", unit = "bar" }'], "with other keys"),
-    "too hot": ([*HEAT, supplied((0, "20 degC"), (20, "400 degC"))], "not below thermal.hottest_film"),
-    "without heat": ([*HEAT, "thermal.model=none", supplied((0, "20 degC"), (20, "40 degC"))], "without heat"),
-    "pressure of the air": ([f"oil.ambient_pressure={points((0, '1 bar'), (20, '0.8 bar'))}"], "from one that stays"),
-    "cavitation pressure from a file": (['oil.cavitation_pressure={ file = "none.csv" }'], "from one that stays"),
-    "wall without heat": ([f"bearing.housing={points((0, '20 degC'), (20, '40 degC'))}"], "no effect without heat"),
-}
-
-
-@pytest.mark.parametrize(("settings", "told"), FAULTS.values(), ids=FAULTS)
-def test_bad_inputs_are_one_clear_fault(settings: list[str], told: str) -> None:
-    with pytest.raises(InputError) as error:
-        machine(*settings)
-    (fault,) = error.value.faults
-    assert told in fault.problem
-    assert fault.remedy
-
-
-REFUSED = {
-    "steps": (['bearing.clearance_steps=[{ time = "1 s", clearance = "40 um" }]'], "clearance_steps"),
-    "pressures of two kinds": (["oil.cavitation_pressure=0.5 bar"], "cavitation_pressure"),
-}
-
-
-@pytest.mark.parametrize(("settings", "told"), REFUSED.values(), ids=REFUSED)
-def test_what_has_one_pressure_refuses_a_table(settings: list[str], told: str) -> None:
-    with pytest.raises(InputError) as error:
-        make_plan(machine(pressure((0, "1 bar"), (20, "3 bar")), *settings))
-    assert any(told in fault.problem for fault in error.value.faults)
 
 
 def test_the_remedy_for_pressures_of_two_kinds_is_possible() -> None:

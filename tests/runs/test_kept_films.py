@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import signal
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
+from resumed import assert_resumable
 
 from frbcli import load_case, make_plan, read_run, runup
-from frbcli.case.reading.load import load_case_text
 from frbcli.case.schema import Case
-from frbcli.errors import InputError, RunFileError
+from frbcli.errors import RunFileError
 from frbcli.film.cells.data import SHEARED
 from frbcli.plot.moving import MOMENTS, animate_films, film_moments_figure
 from frbcli.results.store import GAS, OIL, KeptFilm, Run, kept_film
-from frbcli.runs import march
 from frbcli.scene.machine.system import make_system
 
 FRAMES = 9
@@ -55,27 +53,14 @@ def test_the_oil_and_the_place_of_each_moment_are_those_of_the_signals(kept: Run
     assert film.oil[film.gas > 0.02].mean() < film.oil[film.gas < 0.002].mean() - 0.01
 
 
-def test_a_run_with_kept_films_is_the_same_and_may_be_resumed(
-    kept: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Bit for bit."""
-    plain, left = runup(case_of(), tmp_path / "plain.h5"), iter(range(12, -1, -1))
+def test_a_run_with_kept_films_is_the_same_and_may_be_resumed(kept: Run, tmp_path: Path) -> None:
+    """Bit for bit, with the films that it has kept."""
+    plain = runup(case_of(), tmp_path / "plain.h5")
     for name in plain.signals:
         np.testing.assert_array_equal(kept[name], plain[name], strict=True)
-    monkeypatch.setattr(march, "BUDGET", 20)
-
-    def stop(_: object) -> None:
-        if next(left, None) == 0:
-            signal.raise_signal(signal.SIGINT)
-
-    stopped = runup(case_of(KEPT), tmp_path / "broken.h5", observe=stop)
-    assert stopped.status == "interrupted"
-    assert 0 < len(kept_film(stopped, [""]).times) < FRAMES
-    resumed = runup(load_case_text(stopped.case_text, name="rigid"), tmp_path / "broken.h5", resume=True)
-    assert kept.checkpoint is not None
-    assert resumed.checkpoint is not None
-    for part in (OIL, GAS):
-        np.testing.assert_array_equal(resumed.checkpoint[part], kept.checkpoint[part], strict=True)
+    whole = assert_resumable(case_of(KEPT), tmp_path, 0.02)
+    assert whole.checkpoint is not None
+    assert {OIL, GAS} <= set(whole.checkpoint)
 
 
 def test_cells_are_seen_where_they_are_in_the_lab() -> None:
@@ -112,17 +97,3 @@ def test_films_move_in_a_picture(kept: Run, tmp_path: Path) -> None:
         film_moments_figure(kept, from_time=0.032)
     with pytest.raises(RunFileError, match='has no film "outer"'):
         film_moments_figure(kept, "outer")
-
-
-@pytest.mark.parametrize(
-    ("settings", "told"),
-    [
-        (("film.cavitation=half-sommerfeld",), "asks for the oil of cells"),
-        (("film.cavitation=reynolds", "film.solution=cells"), "their model does not keep any"),
-        (('output.films={ from="2 s", to="1 s" }',), "is not after from"),
-        (('output.films={ from="2 s", to="3 s" }',), "is not before the end of the run"),
-    ],
-)
-def test_what_cannot_be_kept_is_refused(settings: tuple[str, ...], told: str) -> None:
-    with pytest.raises(InputError, match=told):
-        make_plan(load_case("rigid", [*SPEED, "rotor.unbalance=0", KEPT, *settings]))

@@ -9,12 +9,12 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
 import pytest
+from resumed import assert_same
 
 import frbcli.runs.run as solve_run
 from frbcli.case.reading.load import load_case
-from frbcli.results.store import Run, read_run
+from frbcli.results.store import read_run
 from frbcli.runs import march
 from frbcli.runs.run import runup
 
@@ -51,14 +51,6 @@ def go_on(machine: Machine, path: Path, life: float) -> None:
     signal.setitimer(signal.ITIMER_PROF, life)
     solve_run.CHECKPOINT_EVERY_s, solve_run.CHECKPOINT_SHARE = 0.0, 1.0
     runup(load_case(machine.base, machine.settings), path, resume=True)
-
-
-def assert_same(run: Run, other: Run) -> None:
-    """Bit for bit, but for what the clock says."""
-    assert list(run.signals) == list(other.signals)
-    for name in run.signals:
-        np.testing.assert_array_equal(run[name], other[name], strict=True)
-    assert (run.status, run.t_end_s, run.events, run.error) == (other.status, other.t_end_s, other.events, other.error)
 
 
 @pytest.mark.nightly

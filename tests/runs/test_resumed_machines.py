@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-import signal
-from itertools import count
 from pathlib import Path
 
-import numpy as np
 import pytest
 from marches import rigid_shaft
+from resumed import assert_resumable
 
 from frbcli.case.reading.load import case_from_dict
-from frbcli.case.schema import Case
-from frbcli.results.store import Run
-from frbcli.runs import march
-from frbcli.runs.run import runup
 
 LOOKS = 8  # steps between two looks at the clock
 TIMES = ("speed.from=250 Hz", "speed.duration=10 ms", "output.step=50 us")
@@ -34,14 +28,6 @@ MACHINES = {
 }
 
 
-def assert_same(run: Run, other: Run) -> None:
-    """Bit for bit, but for what the clock says."""
-    assert list(run.signals) == list(other.signals)
-    for name in run.signals:
-        np.testing.assert_array_equal(run[name], other[name], strict=True, err_msg=name)
-    assert (run.status, run.t_end_s, run.events, run.error) == (other.status, other.t_end_s, other.events, other.error)
-
-
 @pytest.mark.parametrize(
     "settings",
     [  # what goes on of tilts and of a collar goes on of both
@@ -49,39 +35,16 @@ def assert_same(run: Run, other: Run) -> None:
         for name, settings in MACHINES.items()
     ],
 )
-def test_a_resumed_run_is_bit_equal(
-    settings: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(march, "BUDGET", LOOKS)
-    assert_resumable(rigid_shaft(*TIMES, *settings), tmp_path)
+def test_a_resumed_run_is_bit_equal(settings: tuple[str, ...], tmp_path: Path) -> None:
+    assert_resumable(rigid_shaft(*TIMES, *settings), tmp_path, 2e-3, 5e-3, steps=LOOKS)
 
 
-def test_a_resumed_run_of_a_free_speed_is_bit_equal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_resumed_run_of_a_free_speed_is_bit_equal(tmp_path: Path) -> None:
     """Its speed and angle are part of the state: a torque that changes, a load, the reaction of the whirl."""
-    monkeypatch.setattr(march, "BUDGET", LOOKS)
     data = {
         "rotor": {"kind": "rigid", "mass": "6 kg", "unbalance": "2 g*m", "polar_inertia": "0.02 kg*m^2"},
         "bearing": {"kind": "coefficients", "stiffness": "2e6 N/m", "damping": "100 N*s/m"},
         "drive": {"torque": [["0 s", "30 N*m"], ["0.2 s", "10 N*m"]], "load": "1e-3 N*m*s", "duration": "0.2 s",
                   "start": "20 Hz", "reaction": True},
     }  # fmt: skip
-    assert_resumable(case_from_dict(data, "driven"), tmp_path)
-
-
-def assert_resumable(case: Case, tmp_path: Path) -> None:
-    """A run that is interrupted twice is the run in one piece."""
-    broken, reached = tmp_path / "broken.h5", [0.0]
-    whole = runup(case, tmp_path / "whole.h5")
-    assert whole.status == "finished"
-    for stop_at in (3, 2):
-        looks = count(1)
-
-        def stop(_: object, looks: count[int] = looks, stop_at: int = stop_at) -> None:
-            if next(looks) == stop_at:
-                signal.raise_signal(signal.SIGINT)
-
-        stopped = runup(case, broken, resume=True, observe=stop)
-        assert stopped.status == "interrupted"
-        reached.append(stopped.t_end_s)
-        assert reached[-2] < reached[-1] < whole.t_end_s
-    assert_same(runup(case, broken, resume=True), whole)
+    assert_resumable(case_from_dict(data, "driven"), tmp_path, 0.05, 0.12, steps=LOOKS)

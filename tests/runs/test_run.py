@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numba.core.event import trigger_event
+from resumed import assert_same, interrupt_after
 
 from frbcli.analysis.events import find_events
 from frbcli.case.reading.load import load_case, load_case_text
@@ -37,16 +38,6 @@ def short_case(*settings: str) -> Case:
     return load_case("jeffcott", (*SHORT, *settings))
 
 
-def assert_same(run: Run, other: Run) -> None:
-    """Bit for bit, but for what the clock says."""
-    assert list(run.signals) == list(other.signals)
-    for name in run.signals:
-        np.testing.assert_array_equal(run[name], other[name], strict=True)
-    assert (run.status, run.t_end_s, run.events, run.error) == (other.status, other.t_end_s, other.events, other.error)
-    counts = ("steps", "rejected_steps", "film_solves", "steps_per_revolution")
-    assert [run.cost[name] for name in counts] == [other.cost[name] for name in counts]
-
-
 def plain(event: dict[str, Any]) -> dict[str, Any]:
     """An event without what the second run says of it."""
     second = ("uncertainty", "uncertainty_Hz", "certain", "reason")
@@ -56,17 +47,6 @@ def plain(event: dict[str, Any]) -> dict[str, Any]:
 def found_again(run: Run) -> list[dict[str, Any]]:
     """The events in the signals of a run."""
     return [plain(asdict(event)) for event in find_events(run)]
-
-
-def interrupt_after(calls: int) -> Callable[[Progress], None]:
-    """An observer that presses Ctrl-C at its given call."""
-    left = iter(range(calls - 1, -1, -1))
-
-    def observe(_: Progress) -> None:
-        if next(left, None) == 0:
-            signal.raise_signal(signal.SIGINT)
-
-    return observe
 
 
 @pytest.fixture

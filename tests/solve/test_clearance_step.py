@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from flows import net_flow
+from resumed import assert_resumable
 
 import frbcli
 from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import resting_position
-from frbcli.errors import InputError
 from frbcli.film.cells.data import OIL
 from frbcli.rotor.loads import speed_profile
 from frbcli.runs.march import March
@@ -119,24 +119,11 @@ def test_a_shell_that_closes_upon_the_journal_is_contact(model: str, tmp_path: P
     ],
     ids=["table", "co-simulation", "rings"],
 )
-def test_a_run_that_was_put_down_goes_on_with_the_same_clearance(name: str, settings: list[str]) -> None:
+def test_a_run_that_was_put_down_goes_on_with_the_same_clearance(
+    name: str, settings: list[str], tmp_path: Path
+) -> None:
     course = ["speed.duration=0.06s", "speed.from=20 Hz", "speed.to=21Hz", "output.step=0.1ms"]
-    case = load_case(name, [*course, *settings])
-    whole = under_way(case)
-    status, signals = finish(whole)
-    assert status == FINISHED
-    for until in (0.02, 0.03, 0.04):
-        march, found = under_way(case), []
-        while march.time < until:
-            found.append(march.chunk()[1])
-        again = under_way(case)
-        again.restore(march.snapshot())
-        assert again.time == march.time
-        status, rest = finish(again)
-        assert status == FINISHED
-        for signal, values in signals.items():
-            joined = np.concatenate([*(part[signal] for part in found), rest[signal]])
-            np.testing.assert_array_equal(joined, values, err_msg=signal)
+    assert_resumable(load_case(name, [*course, *settings]), tmp_path, 0.02, 0.03, 0.04)
 
 
 @pytest.mark.nightly  # co-simulation beside the coupled loop: test_cosimulation
@@ -168,21 +155,3 @@ def test_the_case_in_the_file_is_the_case(tmp_path: Path) -> None:
     assert load_case_text(run.case_text) == case
     assert [step.clearance for step in case.bearings[0].clearance_steps] == [30e-6, 33e-6]  # type: ignore[union-attr]
     assert [event["t_s"] for event in run.events if event["kind"] == "clearance-step"] == [0.02, 0.03]
-
-
-@pytest.mark.parametrize(
-    ("settings", "said"),
-    [
-        ([step_to("2 mm")], "too large for a thin film"),
-        ([step_to("-2 um")], "greater than 0"),
-        (['bearing.clearance_steps=[{time="2s",clearance="30um"},{time="1s",clearance="33um"}]'], "not after the step"),
-    ],
-)
-def test_what_cannot_be(settings: list[str], said: str) -> None:
-    with pytest.raises(InputError, match=said):
-        make_plan(load_case("jeffcott", settings))
-
-
-def test_no_effect_on_kinematic_tests() -> None:
-    with pytest.raises(InputError, match="no effect"):
-        load_case("bearing", [step_to("40 um")])

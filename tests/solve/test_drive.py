@@ -14,9 +14,6 @@ from frbcli.case.reading.load import case_from_dict
 from frbcli.cli.transient import exit_code
 from frbcli.elements.collar import collar_of
 from frbcli.elements.spring import STICKS
-from frbcli.errors import InputError
-from frbcli.scene.gate.gate import faults
-from frbcli.scene.gate.rule import CYCLES, LADDER, RUN
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.turbocharger import shaft_of
 from frbcli.scene.planning.plan import make_plan
@@ -35,17 +32,6 @@ def test_the_speed_follows_its_closed_form(tmp_path: Path) -> None:
     run = frbcli.runup(case_from_dict(MACHINE, "drive"), tmp_path / "run.h5")
     exact = TORQUE / BRAKES * (1.0 - np.exp(-BRAKES / INERTIA * run["time_s"]))
     np.testing.assert_allclose(2.0 * math.pi * run["speed_Hz"], exact, rtol=1e-6, atol=1e-6)
-
-
-def test_a_given_and_a_free_speed_exclude_each_other() -> None:
-    with pytest.raises(InputError, match="is given with"):
-        case_from_dict(MACHINE | {"speed": {"from": 0, "to": 1, "duration": 1}}, "both")
-
-
-def test_analyses_at_given_speeds_refuse_a_free_one() -> None:
-    case = case_from_dict(MACHINE, "drive")
-    assert not faults(case, RUN)
-    assert all("drive" in [fault.key for fault in faults(case, analysis)] for analysis in (CYCLES, LADDER))
 
 
 # A Jeffcott rotor of stiff bearings whose disk is one mass on one spring, with an unbalance that acts on its rotation
@@ -327,9 +313,3 @@ def test_a_lubricant_brakes_balls_with_the_two_thirds_power_of_the_speed(tmp_pat
     at_start = 1e-3 * 1e-7 * 1.5 * (20.0 * 60.0 * 800.0) ** (2.0 / 3.0) * 20.0**3  # N m of one bearing
     fall = 2.0 * at_start / 4e-5 / (TURN * 800.0) / 3.0  # 1/s
     np.testing.assert_allclose(run["speed_Hz"], 800.0 * (1.0 - fall * run["time_s"]) ** 3, rtol=1e-6)
-
-
-@pytest.mark.parametrize("friction", [{"f0": 1.0}, {"f1": 1e-3, "viscosity": "20 cSt"}])
-def test_friction_of_a_lubricant_needs_both_of_its_numbers(friction: dict[str, object]) -> None:
-    with pytest.raises(InputError, match="viscosity"):
-        on_balls(friction, "40 Hz", "1 s")

@@ -112,18 +112,6 @@ def test_a_machine_that_moves_in_its_plane_has_the_map_of_films_without_tilt(oil
     assert tilted.held.any() == plane.held.any() == (oil[0] != "film.cavitation=half-sommerfeld")
 
 
-@pytest.mark.parametrize(
-    ("case", "settings", "key"),
-    [
-        (None, ['contact={policy="elastic", stiffness="1e8 N/m"}'], "contact.policy"),
-        ("rigid", [*INCLINED, "film.cavitation=penalty"], "film.cavitation"),
-    ],
-)
-def test_what_cycles_do_not_follow_is_refused(case: str | None, settings: list[str], key: str) -> None:
-    given = rigid_shaft(*FOLLOWS, *settings) if case is None else load_case(case, settings)
-    assert [fault.key for fault in faults(given, SPEED_CYCLES)] == [key]
-
-
 def test_cycles_over_other_numbers_do_not_follow_and_whirls_with_unbalance_do() -> None:
     tilted, inclined = rigid_shaft("film.tilt=follows"), load_case("rigid", [*INCLINED, "rotor.unbalance=3 g*mm"])
     oil = tilted.with_settings("film.cavitation=elrod"), inclined.with_settings("film.cavitation=two-phase")

@@ -14,7 +14,6 @@ import frbcli
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import resting_position
-from frbcli.errors import InputError
 from frbcli.linear.stability import stability_points
 from frbcli.rotor.assembly import PLANE
 from frbcli.rotor.loads import SpeedProfile, speed_profile
@@ -229,24 +228,6 @@ def test_a_ladder_counts_cells_as_the_plan_does(case: Case) -> None:
     assert own.mesh is not None
     assert make_plan(case.with_settings(f"accuracy.mesh=[{own.mesh[0]}, {own.mesh[1]}]")).cells == plan.cells
     assert own in list(ladder(case, own))
-
-
-REFUSED = {
-    "forces": ('output.signals=["force"]', "output.signals"),
-    "turns": ("film.coupling=co-simulation", "film.coupling"),
-    "elastic": ('contact={policy="elastic", stiffness="1e8 N/m"}', "contact.policy"),
-    "oil over time": (
-        'bearing.0.supply={kind="circumferential-groove", pressure={time=["0 s", "1 s"], x=["1 bar", "2 bar"]}}',
-        "bearing.0.supply.pressure",
-    ),
-}
-
-
-@pytest.mark.parametrize(("setting", "key"), REFUSED.values(), ids=REFUSED)
-def test_what_a_run_does_not_follow_is_refused(setting: str, key: str) -> None:
-    with pytest.raises(InputError) as refused:
-        make_plan(rigid_shaft("film.tilt=follows", setting))
-    assert [fault.key for fault in refused.value.faults] == [key]
 
 
 def slowest(signal: Array, step: float, order: int = 8) -> complex:

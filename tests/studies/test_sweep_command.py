@@ -107,27 +107,6 @@ def test_the_command_takes_a_list_and_tells_of_failures(elsewhere: Path, capsys:
     assert capsys.readouterr() == ("", "")
 
 
-@pytest.mark.usefixtures("elsewhere")
-@pytest.mark.parametrize(
-    ("words", "problem"),
-    [
-        (["--set", "oil.viscosity=8 mPa*s"], "several values"),
-        ([], "several values"),
-        (["--set", "oil.viscosity=1 Pa*s,", "--stability"], "empty value"),
-        (["--set", "speed.to=1,2", "--set", "speed.to=3,4"], "second time"),
-        (["--set", "rotor.massive=1,2"], "massive"),
-        (["--list", "nowhere.csv"], "nowhere.csv"),
-        (["--set", "speed.to=1 Hz,2 Hz", "--format", "xls"], "is not one of"),
-    ],
-)
-def test_wrong_input_is_exit_2(words: list[str], problem: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["sweep", "jeffcott", *words, "--json"]) == 2
-    told = capsys.readouterr()
-    assert json.loads(told.out)["status"] == "input-error"
-    assert problem in told.err
-    assert not os.listdir()
-
-
 def children() -> list[Path]:
     """The entries in /proc of all processes that this one has started."""
     entries = [entry for entry in Path("/proc").iterdir() if entry.name.isdigit()]

@@ -16,7 +16,7 @@ from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.equilibrium.static_machine import warm_machine
-from frbcli.errors import InputError, NotConverged
+from frbcli.errors import NotConverged
 from frbcli.linear.stability import stability
 from frbcli.materials import OILS
 from frbcli.scene.machine.heat import warm_case, warm_system
@@ -329,33 +329,6 @@ def test_scaled_film_is_the_film_of_that_viscosity_and_clearance(settings: list[
 
 
 @pytest.mark.parametrize(
-    ("settings", "key", "words"),
-    [
-        (["oil.viscosity=12 mPa*s"], "oil.viscosity", "constant"),
-        (["bearing.inner.viscosity=12 mPa*s"], "bearing.inner.viscosity", "constant"),
-        (["bearing.inner.temperature=80 degC"], "bearing.inner.temperature", "no effect"),
-        (["thermal.supply_temperature=-170 degC"], "thermal.supply_temperature", "viscosity"),
-        (["thermal.supply_temperature=400 degC"], "thermal.supply_temperature", "hottest_film"),
-        (["thermal.shaft=adiabatisch"], "thermal.shaft", "100 degC"),
-        (["thermal.shaft={ capacity = 1 }"], "thermal.shaft.conductance", "missing"),
-        (["thermal.modell=lumped"], "thermal.modell", "model"),
-        (["bearing.housing=500 degC"], "bearing.housing", "hottest_film"),
-    ],
-)
-def test_faults_of_heat(settings: list[str], key: str, words: str) -> None:
-    with pytest.raises(InputError) as raised:
-        ring_case(*settings)
-    faults = {fault.key: f"{fault.problem} {fault.remedy}" for fault in raised.value.faults}
-    assert key in faults
-    assert words in faults[key]
-
-
-def test_walls_without_heat_are_refused() -> None:
-    with pytest.raises(InputError, match="no effect without heat"):
-        load_case("jeffcott", ["bearing.housing=60 degC"])
-
-
-@pytest.mark.parametrize(
     ("settings", "words"),
     [
         (["bearing.inner.supply.pressure=1 bar", "bearing.outer.supply.pressure=1 bar"], "no way out"),
@@ -367,8 +340,3 @@ def test_walls_without_heat_are_refused() -> None:
 def test_heat_that_does_not_balance_is_told(settings: list[str], words: str) -> None:
     with pytest.raises(NotConverged, match=words):
         warm_machine(ring_case(*settings), 900.0)
-
-
-def test_heat_is_refused_where_it_is_not_modelled() -> None:
-    with pytest.raises(InputError, match=r"\[thermal\]"):
-        make_plan(single("film.cavitation=two-phase", "film.two-phase.form=published"))

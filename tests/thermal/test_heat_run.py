@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from resumed import assert_resumable
 from test_heat import RING, ring_case, single
 
 from frbcli.case.reading.load import load_case
@@ -19,13 +20,8 @@ from frbcli.errors import NotConverged
 from frbcli.materials import OILS
 from frbcli.plot.motion import quantity_figure
 from frbcli.results.store import Run
-from frbcli.runs.march import March
 from frbcli.runs.run import runup
 from frbcli.scene.machine.heat import heat_of, warm_case
-from frbcli.scene.machine.system import make_segments
-from frbcli.scene.planning.cell_choice import run_up_profile
-from frbcli.scene.planning.plan import make_plan
-from frbcli.solve.state import RUNNING
 from frbcli.studies.compare import compare
 
 HOUSING = "thermal.housing=60 degC"
@@ -248,25 +244,10 @@ def test_films_in_balance_at_each_instant_are_like_those_that_store_heat(ring_ru
     assert run.error["heat_balance_relative"] < 1e-3  # type: ignore[operator]
 
 
-def test_a_run_that_was_interrupted_goes_on_as_if_it_had_not() -> None:
+def test_a_run_that_was_interrupted_goes_on_as_if_it_had_not(tmp_path: Path) -> None:
     case = single("speed.duration=0.2 s", "film.cavitation=two-phase", "film.theory=auto", "speed.to=100 Hz",
                   "thermal.clearance=follows", HOUSING)  # fmt: skip
-    plan = make_plan(case)
-
-    def march() -> March:
-        return March(case, plan, make_segments(case, plan), run_up_profile(case))
-
-    whole, first, second = march(), march(), march()
-    for _ in range(12):
-        first.chunk()
-    second.restore({name: array.copy() for name, array in first.snapshot().items()})
-    assert second.time == first.time > 0.0  # from its start it would end alike, too
-    for one in (whole, second):
-        while one.chunk()[0] == RUNNING:
-            pass
-    for name, array in whole.snapshot().items():
-        if name != "clock":
-            assert np.array_equal(array, second.snapshot()[name]), name
+    assert_resumable(case, tmp_path, 0.1)
 
 
 def test_without_heat_a_run_tells_none(tmp_path: Path) -> None:

@@ -6,19 +6,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from resumed import assert_resumable
 from test_heat import single
 from test_heat_run import HOT_HOUSING, STILL, at_speed
 
 from frbcli.case.schema import Case
 from frbcli.equilibrium.static_machine import warm_machine
 from frbcli.errors import InputError
-from frbcli.runs.march import March
 from frbcli.runs.run import runup
 from frbcli.scene.changes import case_at
-from frbcli.scene.machine.system import make_segments
-from frbcli.scene.planning.cell_choice import run_up_profile
-from frbcli.scene.planning.plan import make_plan
-from frbcli.solve.state import FINISHED, RUNNING
 
 FOLLOWS = ["thermal.clearance=follows", "thermal.shaft=130 degC", HOT_HOUSING]
 
@@ -52,32 +48,8 @@ def test_a_run_settles_at_the_temperatures_of_each_clearance(
     assert run.error["heat_balance_relative"] < 1e-9  # type: ignore[operator]
 
 
-def under_way(case: Case) -> March:
-    plan = make_plan(case)
-    return March(case, plan, make_segments(case, plan), run_up_profile(case))
-
-
-@pytest.mark.parametrize("settings", [[]], ids=["table"])
-def test_a_run_that_was_put_down_goes_on_with_clearance_and_heat(settings: list[str]) -> None:
-    case = stepped("45 um", 0.03, 0.06, "output.step=0.1ms", *settings)
-
-    def finish(march: March) -> dict[str, np.ndarray]:
-        status, found = RUNNING, []
-        while status == RUNNING:
-            status, signals = march.chunk()
-            found.append(signals)
-        assert status == FINISHED
-        return {name: np.concatenate([part[name] for part in found]) for name in found[0]}
-
-    whole = finish(under_way(case))
-    for until in (0.02, 0.03, 0.04):
-        march = under_way(case)
-        while march.time < until:
-            march.chunk()
-        again = under_way(case)
-        again.restore(march.snapshot())
-        for name, values in finish(again).items():
-            np.testing.assert_array_equal(values, whole[name][len(whole[name]) - len(values) :], err_msg=name)
+def test_a_run_that_was_put_down_goes_on_with_clearance_and_heat(tmp_path: Path) -> None:
+    assert_resumable(stepped("45 um", 0.03, 0.06, "output.step=0.1ms"), tmp_path, 0.02, 0.03, 0.04)
 
 
 def test_steps_have_no_temperature_beside_a_cold_clearance() -> None:

@@ -172,55 +172,9 @@ def test_a_table_that_cannot_be_used_is_one_fault(text: str, words: str, tmp_pat
     assert fault.remedy
 
 
-@pytest.mark.parametrize(
-    ("element", "key", "words"),
-    [
-        ({"file": "seal.csv"}, "bearing.file", "names no file"),
-        ({"file": "seal.csv", "stiffness": "1e6 N/m"}, "bearing.file", "with stiffness"),
-        ({}, "bearing.stiffness", "is missing"),
-        ({"stiffness": [["1e6 N/m", "0 N/m"], ["0 N/m"]]}, "bearing.stiffness.1.1", "is missing"),
-        ({"stiffness": [["1e6 N/m", "0 N/m"], ["0 N/m", "1e6 kg"]]}, "bearing.stiffness.1.1", ""),
-        ({"damping": "300 N/m"}, "bearing.damping", ""),
-        ({"mass": [["1 kg", "0 kg"], ["0 kg", "-1 kg"]]}, "bearing.mass", "is negative"),
-        ({"stiffness": "1e6 N/m", "width": "20 mm"}, "bearing.width", "not known"),
-    ],
-)
-def test_keys_that_cannot_be_used_are_told(element: dict[str, Any], key: str, words: str) -> None:
-    with pytest.raises(InputError) as caught:
-        rigid({"kind": "coefficients", "name": "seal"} | element)
-    fault = next(fault for fault in caught.value.faults if fault.key == key)
-    assert words in fault.problem
-    assert fault.remedy
-
-
-@pytest.mark.parametrize(
-    ("tables", "key"),
-    [
-        ({"film": {"theory": "short"}}, "film"),
-        ({"output": {"signals": ["force"]}}, "output.signals"),
-        ({"accuracy": {"mesh": [4, 20]}}, "accuracy.mesh"),
-    ],
-)
-def test_what_is_of_films_alone_is_refused_without_films(tables: dict[str, Any], key: str) -> None:
-    with pytest.raises(InputError) as caught:
-        rigid(bearing(), **tables)
-    (fault,) = caught.value.faults
-    assert fault.key == key
-    assert "no bearing has a film" in fault.problem
-
-
-def test_studies_of_films_are_refused_without_films() -> None:
-    from frbcli.linear.sheets.bearing import bearing_sheet
-
-    case = rigid(bearing())
-    for asked in (frbcli.limit_cycles, bearing_sheet):
-        with pytest.raises(InputError) as caught:
-            asked(case)
-        (fault,) = caught.value.faults
-        assert (fault.key, fault.value) == ("bearing.kind", "coefficients")
-        assert "no film" in fault.problem
+def test_a_case_without_films_has_no_oil() -> None:
     with pytest.raises(InputError, match="oil"):
-        _ = case.oil
+        _ = rigid(bearing()).oil
 
 
 @pytest.mark.nightly  # 10 s; Hopf point and threshold: test_support.py

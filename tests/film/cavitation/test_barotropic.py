@@ -85,17 +85,3 @@ def test_run_up_keeps_its_oil(tmp_path: Path) -> None:
     assert run.status == "finished"
     assert 0.5 < run["oil_fraction"][-1] < 1.0 + 1e-3
     assert abs(run.error["oil_balance_relative"]) < 1e-6  # what Newton leaves of a curved law is carried on
-
-
-@pytest.mark.parametrize(
-    ("setting", "said"),
-    [
-        ("film.barotropic.vapour_sound_speed=1e-6 m/s", "at least 1 m/s"),
-        ("film.barotropic.vapour_sound_speed=5 m/s", "no vapour that is lighter"),  # p_cav above rho c_v^2
-        ("film.barotropic.vapour_sound_speed=1400 m/s", "no vapour that is lighter"),
-        ("oil.density=1e-6 kg/m^3", "at least 10 kg/m"),
-    ],
-)
-def test_speeds_of_sound_without_a_vapour_are_refused(setting: str, said: str) -> None:
-    with pytest.raises(frbcli.InputError, match=said):
-        frbcli.make_plan(load_case("jeffcott", ["film.cavitation=barotropic", setting]))

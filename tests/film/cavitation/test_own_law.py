@@ -75,21 +75,6 @@ def test_documents_have_a_row_for_every_law() -> None:
         assert f"| {name} | {words} | {'yes' if law.keeps_oil else 'no'} |" in theory
 
 
-def test_no_other_place_asks_for_the_name_of_a_law() -> None:
-    """But for the forms of film that a law declares: outside of its file a law is what its row says."""
-    package = Path(frbcli.__file__).parent
-    words = "|".join(re.escape(law.name) for law in SHIPPED)
-    asking = re.compile(rf'(?:==|!=|\bin\b|\bnot in\b)\s*[(\[{{]?\s*"(?:{words})"')
-    found = [
-        f"{path.relative_to(package)}: {line.strip()}"
-        for path in sorted(package.rglob("*.py"))
-        if "cavitation" not in path.parts and "quadratic" not in path.parts
-        for line in path.read_text(encoding="utf-8").splitlines()
-        if asking.search(line)
-    ]
-    assert found == []
-
-
 def example() -> str:
     """The law of docs/adding-a-model.md."""
     page = (DOCS / "adding-a-model.md").read_text(encoding="utf-8")

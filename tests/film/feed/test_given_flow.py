@@ -9,7 +9,7 @@ import pytest
 
 from frbcli import bearing_sheet, load_case
 from frbcli.case.schema import Case
-from frbcli.errors import FilmUnsolved, InputError
+from frbcli.errors import FilmUnsolved
 from frbcli.film.cells.balance.boundaries import ALL, feed_at, limited, supply_pressure
 from frbcli.film.cells.balance.side_flow import outflow
 from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution
@@ -17,8 +17,7 @@ from frbcli.film.cells.linearised import steady_force
 from frbcli.film.cells.loads import FilmLoads, loads
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.scene.films import film_places, volume_film
-from frbcli.scene.gate.gate import require
-from frbcli.scene.gate.rule import ROTATION, STILL
+from frbcli.scene.gate.rule import STILL
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 
@@ -145,19 +144,3 @@ def test_the_balance_of_heat_and_the_sheet_have_the_flow_that_is_given() -> None
     assert films.power_and_flow(0, place, 300.0, 300.0, 1.0)[1] == pytest.approx(flow, rel=1e-9)
     (state,) = bearing_sheet(case, [20.0], 30.0).points
     assert state.side_flow == pytest.approx(flow, rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("settings", "analysis", "told"),
-    [
-        (("film.cavitation=reynolds",), ROTATION, "reynolds does not conserve the oil"),
-        (("film.cavitation=elrod", "motion.tilt=['0.1 mrad', '0 mrad']"), ROTATION, "without tilt"),
-        (("film.cavitation=elrod", "bearing.supply.pressure=1 bar"), ROTATION, "not above 1 bar"),
-    ],
-)
-def test_what_does_not_follow_a_flow_refuses_it(settings: tuple[str, ...], analysis: str, told: str) -> None:
-    motion = 'motion={eccentricity=0.5, angle="-60 deg", speed="20 Hz"}'
-    case = load_case("rigid", [f"bearing.supply={{ {GROOVE}, flow = '0.1 l/min' }}", motion, *settings])
-    with pytest.raises(InputError, match=told) as refused:
-        require(case, analysis)
-    assert all(fault.key == "bearing.supply.flow" for fault in refused.value.faults)

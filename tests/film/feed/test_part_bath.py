@@ -9,18 +9,14 @@ import pytest
 
 from frbcli import load_case
 from frbcli.case.schema import Case
-from frbcli.errors import InputError
 from frbcli.film.cells.film import Motion, VolumeFilm
 from frbcli.film.cells.loads import FilmLoads, loads
 from frbcli.film.cells.mesh.bores import bathed
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.scene.films import film_places, turns_with_oil, volume_film
-from frbcli.scene.gate.gate import require
-from frbcli.scene.gate.rule import ROTATION
 
 MOTION = Motion((0.3, -0.5), (0.0, 0.0), 300.0)
 SUPPLY = 'bearing.supply={ kind = "axial-grooves", opening_angle = "20 deg", pressure = "1.5 bar" }'
-IN_JOURNAL = 'kind = "bores", count = 2, diameter = "3 mm", pressure = "2 bar", on = "journal"'
 RADIUS = 12.5e-3  # m
 
 
@@ -80,20 +76,3 @@ def test_cells_of_a_plain_gap_stay_where_the_bath_is() -> None:
     for ends, turns in ((at_level(0.0), False), ('"oil-bath"', True)):
         case = case_of(ends, "peeken", plain)
         assert turns_with_oil(case, film_places(case)[0]) is turns
-
-
-@pytest.mark.parametrize(
-    ("law", "settings", "told"),
-    [
-        ("reynolds", (), "mass-conserving finite volumes"),
-        ("bubbly", (), "not modelled with oil that carries free gas"),
-        ("elrod", (), "has no effect"),
-        ("peeken", ("motion.tilt=['0.1 mrad', '0 mrad']",), "with a tilt"),
-        ("peeken", (f"bearing.supply={{ {IN_JOURNAL} }}",), "turn"),
-    ],
-)
-def test_what_does_not_follow_a_level_refuses_it(law: str, settings: tuple[str, ...], told: str) -> None:
-    motion = 'motion={eccentricity=0.5, angle="-60 deg", speed="20 Hz"}'
-    with pytest.raises(InputError, match=told) as refused:
-        require(case_of(at_level(0.0), law, motion, *settings), ROTATION)
-    assert "bearing.ends.bath_level" in {fault.key for fault in refused.value.faults}

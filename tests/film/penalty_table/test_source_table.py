@@ -13,7 +13,6 @@ import frbcli
 from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.cycles.method.follower import other_films
-from frbcli.errors import InputError
 from frbcli.film.cavitation.conditions import Reynolds
 from frbcli.film.cells.film import Motion, VolumeFilm
 from frbcli.film.cells.linearised import film_at
@@ -160,34 +159,6 @@ def test_runs_agree_with_those_on_cells(reading: str, tmp_path: Path) -> None:
         error = run.error["film_force_relative"]
         assert error is not None
         assert error < 2e-2
-
-
-def film_decision(name: str, *settings: str) -> tuple[str, str]:
-    plan = make_plan(load_case(name, ["film.cavitation=penalty", *settings]))
-    (decision,) = (item for item in plan.decisions if item.choice == "film")
-    return decision.value, decision.reason
-
-
-def test_the_plan_says_which_films_are_tabulated() -> None:
-    assert "table" in film_decision("jeffcott")[0]
-    assert "table" in film_decision("jeffcott", "bearing.supply.pressure=2 bar")[0]
-    dimensionless = "film.penalty.pressure=dimensionless"
-    for settings, why in (
-        ((dimensionless, "bearing.supply.pressure=2 bar"), "fourth axis"),
-        (("accuracy.target=1e-4",), "too coarse"),
-        (("bearing.ends=free-to-air", "bearing.supply.pressure=2 bar"), "free ends"),
-        (("film.solution=cells",), "set in the case"),
-    ):
-        value, reason = film_decision("jeffcott", *settings)
-        assert "cells" in value
-        assert why in reason
-    assert "openings" in film_decision("axial-groove")[1]
-
-
-def test_a_table_that_cannot_be_is_refused() -> None:
-    for name, *settings in (("axial-groove", "film.cavitation=penalty"), ("jeffcott", "film.cavitation=elrod")):
-        with pytest.raises(InputError, match=r"film\.solution"):
-            make_plan(load_case(name, [*settings, "film.solution=table"]))
 
 
 def test_half_the_nodes_and_more_cells_show_the_error_of_a_table(tabulated: tuple[SourceFilm, FilmData]) -> None:

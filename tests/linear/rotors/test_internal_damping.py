@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from pathlib import Path
 from typing import Any
@@ -12,11 +11,9 @@ import pytest
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict
-from frbcli.cli.main import run as frb
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.linear.stability import stability
 from frbcli.runs.run import runup
-from frbcli.scene.planning.plan import make_plan
 
 TURN = 2.0 * math.pi
 MASS, JOURNAL, SHAFT = 10.0, 1e-3, 1e6  # kg, kg, N/m
@@ -180,13 +177,3 @@ def test_a_run_in_turn_has_the_same_motion(tmp_path: Path) -> None:
         for number, each in enumerate(ways)
     )
     assert np.abs(turns - both).max() < 0.02 * np.abs(without - both).max()
-
-
-def test_the_plan_says_which_damping_turns(capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["check", "jeffcott", "--set", "rotor.internal_damping=2 N*s/m", "--json"]
-    assert frb(words) == 0
-    told = {line["choice"]: line for line in json.loads(capsys.readouterr().out)["plan"]}
-    assert told["internal damping"]["value"] == "2 N*s/m"
-    assert "turns with the shaft" in told["internal damping"]["reason"]
-    assert "does not turn" in told["shaft damping"]["reason"]
-    assert make_plan(frbcli.load_case("rigid")).decisions
