@@ -1,1 +1,1 @@
-"""The command line: thin commands, those of a kind in one module. click and rich live here and nowhere else."""
+"""The command line: thin commands, grouped by kind. click and rich live here and nowhere else."""

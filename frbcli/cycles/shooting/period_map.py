@@ -299,7 +299,7 @@ class PeriodMap:
 
 def period_map(case: Case, cells: tuple[int, int] | None = None) -> PeriodMap:
     """The map of a case whose films are all on cells. cells: (around, along), default: the cells of its plan."""
-    plan = replace(make_plan(case), tolerance=TOLERANCE)  # films on cells are solved as closely as the tolerance asks
+    plan = replace(make_plan(case), tolerance=TOLERANCE)  # finite-volume films follow the tolerance
     plan = plan if cells is None else replace(plan, cells=cells)
     system = make_system(case, plan)
     own = system.films
