@@ -9,7 +9,6 @@ import shutil
 import sys
 import webbrowser
 from importlib.resources import files
-from operator import attrgetter
 from pathlib import Path
 
 import click
@@ -17,7 +16,6 @@ import click
 from frbcli.cli.common import Terminal, output_options, settings_option
 from frbcli.cli.options import CASE_FILE, Command, check_outputs, complete_case, force_option, forced
 from frbcli.cli.progress import display
-from frbcli.columns import Column, Shown, table_of
 from frbcli.errors import did_you_mean, input_error
 
 
@@ -39,6 +37,8 @@ def cases(
     if names:
         _show(names[0], settings, output, hard, terminal)
     elif hard:
+        from frbcli.cli.hard import list_hard
+
         list_hard(terminal)
     else:
         _list(terminal)
@@ -48,7 +48,12 @@ def _show(name: str, settings: tuple[str, ...], output: Path | None, hard: bool,
     """Print a case or copy it."""
     from frbcli.case.reading.shipped import find_shipped
 
-    text = hard_text(name) if hard else find_shipped(name)
+    if hard:
+        from frbcli.cli.hard import hard_text
+
+        text = hard_text(name)
+    else:
+        text = find_shipped(name)
     if settings:
         from frbcli.case.reading.load import load_case_text
 
@@ -79,40 +84,6 @@ def _write(text: str, output: Path) -> None:
 
     check_outputs((output, NEW))
     write(output, NEW, text, forced())
-
-
-LIST = "list"  # table of the terminal
-
-# Of a HardCase
-HARD_CASE = (
-    Column("name", "", "name of the hard case", shown=(Shown("case"), Shown("case", table=LIST))),
-    Column("topic", "", "topic"),
-    Column("hard", "", "difficulty", shown=(Shown("difficulty"), Shown("difficulty", table=LIST)), flat=False),
-    Column("command", "", "command that it is for", attrgetter("words"), flat=False),
-    Column("expected", "", "how it has to end", attrgetter("end"), shown=(Shown("ends", table=LIST),)),
-    Column("why", "", "cause of that end", flat=False),
-)
-
-
-def list_hard(terminal: Terminal) -> None:
-    """The table of all hard cases."""
-    from frbcli.case.reading.shipped import hard_cases
-
-    table = table_of(HARD_CASE, hard_cases())
-    terminal.show("hard cases", table, LIST)
-    terminal.remark("`frb cases --hard NAME` prints one as a case file.")
-    terminal.emit({"command": "cases", "hard": table.documents()})
-
-
-def hard_text(name: str) -> str:
-    """The case file of a hard case: its shipped case with the settings put in. Raises InputError for an unknown name;
-    a case that has to be refused is given as its base and its settings."""
-    from frbcli.case.reading.shipped import hard_cases
-
-    (hard,) = hard_cases([name])
-    settings = "".join(f"#   --set '{text}'\n" for text in hard.settings)
-    head = f"# {hard.hard}\n# The shipped case {hard.base} for `frb {hard.command}`, with\n{settings}"
-    return head + (hard.case().source_text if hard.end != "input-error" else "# which has to be refused.\n")
 
 
 @click.command(cls=Command)

@@ -16,7 +16,7 @@ from paths import DOCS
 
 from frbcli.balancing import PLANES, POINTS
 from frbcli.bearing_tests.columns import GAS, MOMENT, MOMENT_HISTORY, RESULT, STRIBECK, moment_columns
-from frbcli.cli.cases import HARD_CASE
+from frbcli.cli.hard import HARD_CASE
 from frbcli.columns import Column, Columns
 from frbcli.cycles.columns import (
     MISSING,

@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING
 from frbcli.case.film import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.columns import html_table
+from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import Mesh
-from frbcli.scene.films import film_places, misaligned, turning_rings
+from frbcli.scene.films import film_places, is_published, misaligned, turning_rings
 from frbcli.scene.forms.form import CHAINS, CLIPPED, CLOSED_FORM, FIELDS, MOST_EXPENSIVE_FIRST, NO_FILM, TABLE, FilmForm
 from frbcli.scene.forms.solutions import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
 from frbcli.scene.forms.tilted import CELLS, INCLINED, TILTED, CellForm
@@ -252,3 +253,14 @@ class Plan:
         """In a notebook: its decisions."""
         rows = [(each.choice, each.value, each.reason) for each in self.decisions]
         return html_table("plan", ("choice", "value", "reason"), rows, len(rows))
+
+
+def about_oil(case: Case, law: type[Law]) -> str:
+    """What a law makes of the oil."""
+    if law.keeps_oil:
+        if law.published_form and is_published(case):
+            return "the oil is part of the state, and some is created"
+        return f"{'mass-conserving: ' if law.conserves else ''}the oil is part of the state"
+    if not law.cavitates:
+        return "the film does not cavitate"
+    return "oil is not conserved"

@@ -24,7 +24,6 @@ from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing
 from frbcli.case.film import FilmGeometry
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
-from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import Mesh
 from frbcli.film.pad_geometry import COARSE, MESH
@@ -36,7 +35,6 @@ from frbcli.scene.course import ERROR_ORDERS, reference_length, resolution_decis
 from frbcli.scene.films import (
     coupled,
     film_places,
-    is_published,
     opens_to_groove,
     resistance,
     rings,
@@ -55,6 +53,7 @@ from frbcli.scene.planning.film_choice import (
     Decision,
     FilmChoice,
     Plan,
+    about_oil,
     choose_films,
     form_of,
 )
@@ -266,9 +265,8 @@ def _about_target(case: Case, plan: Plan) -> Decision:
 
 
 def _mesh_text(plan: Plan) -> str:
-    if plan.cells is not None:
-        return "{} x {} cells".format(*plan.cells)
-    return f"{plan.mesh.axial} x {plan.mesh.circumferential} elements"
+    elements = f"{plan.mesh.axial} x {plan.mesh.circumferential} elements"
+    return elements if plan.cells is None else "{} x {} cells".format(*plan.cells)
 
 
 def _total_s(case: Case, plan: Plan) -> float:
@@ -335,19 +333,8 @@ def _decide_models(case: Case, films: FilmChoice, decide: Decide) -> None:
     """Theory and cavitation."""
     decide("theory", films.theory, films.theory_why)
     for name, cavitation, is_set in _cavitations(case):
-        reason = _about_oil(case, law_named(cavitation))
+        reason = about_oil(case, law_named(cavitation))
         decide("cavitation", name, f"{'set in the case' if is_set else 'the default'}; {reason}")
-
-
-def _about_oil(case: Case, law: type[Law]) -> str:
-    """What a law makes of the oil."""
-    if law.keeps_oil:
-        if law.published_form and is_published(case):
-            return "the oil is part of the state, and some is created"
-        return f"{'mass-conserving: ' if law.conserves else ''}the oil is part of the state"
-    if not law.cavitates:
-        return "the film does not cavitate"
-    return "oil is not conserved"
 
 
 def _decide_scene(case: Case, decide: Decide) -> None:

@@ -19,7 +19,7 @@ from frbcli.arrays import Array
 from frbcli.bearing_tests.kinematic import KinematicResult, rotation, squeeze, whirl
 from frbcli.case.reading.shipped import HardCase, hard_cases, hard_folder
 from frbcli.case.schema import Case
-from frbcli.cli.cases import HARD_CASE
+from frbcli.cli.hard import HARD_CASE
 from frbcli.columns import Column, Shown, Table, Tabular, named, short_number, table_of
 from frbcli.compiled import working_time
 from frbcli.errors import InputError, NotConverged
