@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 from frbcli import load_case, rotation
-from frbcli.errors import InputError
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import ROTATION
 
@@ -49,25 +48,6 @@ def test_a_film_has_its_own_model_unless_another_one_is_asked_for() -> None:
     case = load_case("floating-ring", own)
     assert [each.cavitation for each in rotation(case).results] == ["reynolds"]
     assert [each.cavitation for each in rotation(case, ["half-sommerfeld"]).results] == ["half-sommerfeld"]
-
-
-@pytest.mark.parametrize(
-    ("case", "settings", "told"),
-    [
-        ("floating-ring", [ALONE], 'motion.film: is missing: the case has 2 films, and a rotation moves the journal of '
-         'one. Write e.g. motion.film = "inner".'),
-        ("floating-ring", [MOTION.format("iner")], 'motion.film = iner: is no film of the case. Did you mean "inner"?'),
-        ("bearing", [MOTION.format("inner")], "motion.film = inner: is no film of the case. Leave it out"),
-        ("floating-ring", [MOTION.format("inner"), "bearing.channels=coupled"], 'Write channels = "pressure"'),
-        ("floating-ring-heat", [MOTION.format("inner")], 'Write thermal.model = "none"'),
-        ("floating-ring", [MOTION.format("inner"), "bearing.inner.supply.on=journal"], "bearing.inner.supply.on = "),
-    ],
-)  # fmt: skip
-def test_what_cannot_be_tested_is_told_with_its_own_key(case: str, settings: list[str], told: str) -> None:
-    with pytest.raises(InputError) as error:
-        rotation(load_case(case, settings))
-    assert told in str(error.value)
-    assert str(error.value).count("\n") == 1
 
 
 def test_remedies_lead_to_a_test() -> None:

@@ -14,12 +14,6 @@ from frbcli.errors import InputError
 ASPERITIES = "[contact]\nmodel = 'asperities'\nsummit_radius = '20 um'\nsummit_density = '1e10 1/m^2'"
 
 
-def test_a_model_of_contact_that_is_none_is_the_only_fault() -> None:
-    with pytest.raises(InputError) as caught:
-        load_case("rigid", ["contact.model=auto", "contact.policy=elastic", "contact.stiffness=1e8 N/m"])
-    assert [fault.key for fault in caught.value.faults] == ["contact.model"]
-
-
 def test_every_fault_at_once_with_key_line_value_and_remedy() -> None:
     text = """title = "all wrong"
 [rotor]

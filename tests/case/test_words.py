@@ -82,19 +82,6 @@ def test_a_misspelt_rotor_is_one_fault(capsys: pytest.CaptureFixture[str]) -> No
     assert capsys.readouterr().err.splitlines()[1:] == [fault]
 
 
-@pytest.mark.parametrize(
-    ("case", "setting", "said"),
-    [
-        ("floating-ring", "bearing.ring.mass=-1 g", 'Write e.g. "30 g"'),
-        ("jeffcott", 'oil.vogel={ eta_0 = "1e-4 Pa*s", A = "900 K", C = "x" }', 'Write e.g. "-180 K"'),
-    ],
-)
-def test_a_remedy_has_the_size_of_its_key(case: str, setting: str, said: str) -> None:
-    with pytest.raises(InputError) as caught:
-        load_case(case, [setting])
-    assert said in str(caught.value)
-
-
 def test_a_run_is_an_hdf5_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     picture = tmp_path / "run.png"
     assert frb(["runup", "jeffcott", "-o", str(picture), "--set", "speed.duration=0.01 s"]) == 2

@@ -320,15 +320,3 @@ def test_the_command_shoots(capsys: pytest.CaptureFixture[str], tmp_path) -> Non
     (branch,) = document["branches"]
     assert branch["points"][0]["torque_N_m"] is None
     assert (tmp_path / "oil.png").exists()
-
-
-@pytest.mark.parametrize(
-    ("setting", "told"),
-    [
-        ('bearing.supply={kind="bores",count=4,diameter="2 mm",axial_position=0.5,on="journal",pressure="2 bar"}',
-         "openings that turn"),
-    ],
-)  # fmt: skip
-def test_films_whose_map_changes_from_period_to_period_are_told(setting: str, told: str) -> None:
-    with pytest.raises(frbcli.InputError, match=told):
-        frbcli.limit_cycles(frbcli.load_case("rigid-two-phase", [setting]))

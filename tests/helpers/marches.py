@@ -21,9 +21,13 @@ from frbcli.film.kinds.tilted import TiltedFilms
 from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.rotor.assembly import Body, LinearRotor, Link, assembled, jeffcott_rotor, point_mass
 from frbcli.rotor.loads import SpeedProfile, speed_profile
-from frbcli.runs.start import rotor_data, state_at
-from frbcli.scene.machine.system import System
-from frbcli.solve.state import METHODS, OUTPUTS, RUNNING, Control, State, make_output
+from frbcli.runs.march import control_of
+from frbcli.runs.start import first_state, rotor_data, state_at
+from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.cell_choice import run_up_profile
+from frbcli.scene.planning.film_choice import Plan
+from frbcli.scene.planning.plan import make_plan
+from frbcli.solve.state import FINISHED, METHODS, OUTPUTS, RUNNING, Control, State, make_output
 from frbcli.solve.time_loop import advance
 
 MESH = Mesh(6, 96)
@@ -234,3 +238,27 @@ def rigid_shaft(*more: str) -> Case:
         f"speed.to={SPEED} Hz",
     )
     return load_case("jeffcott", [*settings, *more])
+
+
+def planned(case: Case, **changes: object) -> tuple[Plan, System]:
+    """The plan of a case, with changes, and the system that follows from it."""
+    plan = replace(make_plan(case), **changes)  # type: ignore[arg-type]
+    return plan, make_system(case, plan)
+
+
+def run_up(
+    case: Case, plan: Plan, system: System, state: State | None = None, budget: int = 10**6,
+    control: Control | None = None,
+) -> tuple[Array, State]:  # fmt: skip
+    """Displacements (rows, n) at the output times of a run-up that comes to its end, and the last state."""
+    profile = run_up_profile(case)
+    state = first_state(case.start, system, profile) if state is None else state
+    output = make_output(4000, system.rotor.size, len(system.names))
+    limits, rotor = control or control_of(case, plan), rotor_data(system, profile)
+    parts = rotor, system.films.loop, METHODS[plan.method].tableau, limits, state, budget
+    status, written = RUNNING, 0
+    while status == RUNNING:
+        status, fresh = advance(*parts, output.after(written))
+        written += fresh
+    assert status == FINISHED
+    return output.q[:written], state

@@ -195,12 +195,6 @@ def test_modes_begin_with_those_that_grow_whether_they_oscillate_or_not() -> Non
     assert len(StabilityPoint(100.0, (), np.zeros(0, dtype=complex)).modes) == 0
 
 
-def test_film_whose_oil_does_not_settle_is_refused_under_the_key_that_says_so() -> None:
-    with pytest.raises(InputError) as refused:
-        stability(load_case("floating-ring", ["bearing.inner.cavitation=elrod"]), [100.0])
-    assert [fault.key for fault in refused.value.faults] == ["bearing.inner.cavitation"]
-
-
 def test_one_speed_has_no_threshold_and_says_whether_it_is_stable() -> None:
     for speed, found in ((100, "every motion decays"), (250, "a motion grows")):
         settings = ["film.theory=short", f"speed.from={speed} Hz", f"speed.to={speed} Hz"]

@@ -15,15 +15,6 @@ from frbcli.errors import InputError
 SPEED = [2000.0]
 
 
-def test_a_collar_is_on_the_shaft() -> None:
-    bearing = ('thrust_bearing=[{{side="right", inner_radius="5 mm", outer_radius="11 mm", pads=4, '
-               'pad_angle="75 deg", taper_angle="50 deg", taper="20 um"{}}}]')  # fmt: skip
-    frbcli.load_case("turbocharger-car", [bearing.format(', position="20 mm"')])
-    for position, words in ((', position="5 m"', "not on the shaft of"), ("", "position: is missing")):
-        with pytest.raises(InputError, match=words):
-            frbcli.load_case("turbocharger-car", [bearing.format(position)])
-
-
 def test_a_load_is_that_of_the_gap_found_for_it() -> None:
     case = frbcli.load_case("thrust")
     (state,) = frbcli.thrust_sheet(case, speeds_Hz=SPEED, loads=[40.0]).points

@@ -2,29 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from flows import net_flow
-from marches import control, slope
+from marches import control, planned, run_up, slope
 
 import frbcli
 from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
-from frbcli.errors import InputError
 from frbcli.film.cells.data import VolumeFilms
 from frbcli.results.store import read_run
 from frbcli.runs.films import oil_defect
-from frbcli.runs.march import Progress, control_of
+from frbcli.runs.march import Progress
 from frbcli.runs.start import first_state, rotor_data
-from frbcli.scene.machine.system import System, make_system, settled_share
+from frbcli.scene.machine.system import settled_share
 from frbcli.scene.planning.cell_choice import run_up_profile
-from frbcli.scene.planning.film_choice import Plan
 from frbcli.scene.planning.plan import make_plan
-from frbcli.solve.state import FINISHED, METHODS, REJECTED, RUNNING, SOLVES, STEP, STEPS, State, make_output
+from frbcli.solve.state import FINISHED, METHODS, REJECTED, SOLVES, STEP, STEPS, State, make_output
 from frbcli.solve.time_loop import advance
 
 SHORT = ["speed.duration=0.1s", "speed.to=30Hz", "speed.from=20Hz", "output.step=0.5ms", "accuracy.mesh=[5,32]"]
@@ -32,27 +29,6 @@ SHORT = ["speed.duration=0.1s", "speed.to=30Hz", "speed.from=20Hz", "output.step
 
 def case_of(name: str, *settings: str) -> Case:
     return load_case(name, [*SHORT, *settings])
-
-
-def planned(case: Case, **changes: object) -> tuple[Plan, System]:
-    plan = replace(make_plan(case), **changes)  # type: ignore[arg-type]
-    return plan, make_system(case, plan)
-
-
-def run(case: Case, plan: Plan, system: System, state: State | None = None, budget: int = 10**6) -> tuple[Array, State]:
-    """Displacements (rows, n) at the output times, and the last state."""
-    profile = run_up_profile(case)
-    state = first_state(case.start, system, profile) if state is None else state
-    rows, n = 4000, system.rotor.size
-    output = make_output(rows, n, len(system.films.with_fields))
-    status, written = RUNNING, 0
-    tableau, control, rotor = METHODS[plan.method].tableau, control_of(case, plan), rotor_data(system, profile)
-    while status == RUNNING:
-        status, fresh = advance(
-            rotor, system.films.loop, tableau, control, state, budget, output.after(written)
-        )
-        written += fresh
-    return output.q[:written], state
 
 
 @pytest.mark.parametrize(
@@ -63,7 +39,7 @@ def test_all_oil_is_accounted_for(settings: list[str]) -> None:
     plan, system = planned(case)
     film = system.films.with_fields[0]
     before = first_state(case.start, system, run_up_profile(case))
-    _, after = run(case, plan, system)
+    _, after = run_up(case, plan, system)
     free = ~film.grid.fixed
 
     def oil(state: State) -> float:
@@ -82,8 +58,8 @@ def test_all_oil_is_accounted_for(settings: list[str]) -> None:
 def test_pauses_do_not_change_the_run(name: str) -> None:
     case = case_of(name, "film.cavitation=two-phase", "speed.duration=0.02s")
     plan, system = planned(case)
-    whole, end = run(case, plan, system)
-    pieces, paused = run(case, plan, system, budget=7)
+    whole, end = run_up(case, plan, system)
+    pieces, paused = run_up(case, plan, system, budget=7)
     np.testing.assert_array_equal(pieces, whole)
     np.testing.assert_array_equal(paused.wet, end.wet)
 
@@ -143,7 +119,7 @@ def test_cells_are_solved_as_exactly_as_the_steps_deserve(cavitation: str, grid:
         assert isinstance(system.films.loop, VolumeFilms)
         system.films.loop.films["settled"] = settled
         film, first = system.films.with_fields[0], first_state(case.start, system, run_up_profile(case))
-        q, last = run(case, plan, system)
+        q, last = run_up(case, plan, system)
         if system.remembers:
             gained = (film.grid.area * (last.wet[2, 0] - first.wet[2, 0]))[~film.grid.fixed].sum()
             assert gained == pytest.approx(net_flow(last, 0), abs=1e-10 * float(last.flows[0, 0].max()))
@@ -158,8 +134,8 @@ def test_cells_are_solved_as_exactly_as_the_steps_deserve(cavitation: str, grid:
 def test_half_sommerfeld_on_cells_is_that_of_the_table() -> None:
     case = case_of("jeffcott", "accuracy.mesh=[8,96]")
     (_, closed), (plan, cells) = planned(case), planned(case, cells=(96, 8))
-    exact, _ = run(case, make_plan(case), closed)
-    found, _ = run(case, plan, cells)
+    exact, _ = run_up(case, make_plan(case), closed)
+    found, _ = run_up(case, plan, cells)
     clearance = closed.clearances[0]
     assert np.max(np.abs(found[:, :2] - exact[:, :2])) < 3e-3 * clearance
 
@@ -179,7 +155,7 @@ def test_a_rotor_that_rests_stays_there(cavitation: str, apart: float) -> None:
     ]
     case = case_of("jeffcott", *settings)
     plan, system = planned(case, tolerance=1e-5)
-    q, _ = run(case, plan, system)
+    q, _ = run_up(case, plan, system)
     assert np.max(np.abs(q - q[0])) < apart * system.clearances[0]
 
 
@@ -220,7 +196,7 @@ def test_kinked_models_settle_where_bores_turn_fast(cavitation: str, tmp_path: P
 def test_steepness_follows_the_whirl() -> None:
     def path(*settings: str) -> Array:
         case = case_of("jeffcott", "film.cavitation=two-phase", "speed.duration=0.03s", *settings)
-        return run(case, *planned(case))[0]
+        return run_up(case, *planned(case))[0]
 
     once, same = path(), path("film.two-phase.whirl_steepness=0.99")
     assert np.array_equal(once, same)
@@ -239,20 +215,12 @@ def test_a_grid_that_turns_with_half_the_speed_finds_the_same_path(cavitation: s
         paths = []
         for grid in ("fixed", "half-speed"):
             case = case_of("jeffcott", *settings, f"film.grid={grid}", f"accuracy.mesh=[5,{around}]")
-            paths.append(run(case, *planned(case))[0])
+            paths.append(run_up(case, *planned(case))[0])
         return float(np.abs(paths[1] - paths[0]).max() / case.bearings[0].clearance)  # type: ignore[union-attr]
 
     coarse, fine = apart(32), apart(64)
     assert 0.0 < fine < 1e-3
     assert fine < 0.6 * coarse
-
-
-@pytest.mark.parametrize(
-    ("name", "settings"), [("jeffcott", []), ("axial-groove", ["film.cavitation=penalty"])], ids=["table", "grooves"]
-)
-def test_grid_that_cannot_turn(name: str, settings: list[str]) -> None:
-    with pytest.raises(InputError, match=r"film\.grid"):
-        make_plan(load_case(name, [*settings, "film.grid=half-speed"]))
 
 
 def test_stopped_while_its_error_is_told_it_goes_on(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from flows import net_flow
+from marches import run_up
 from numba import njit
 from scipy.optimize import brentq
 
@@ -34,7 +35,7 @@ from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.cosimulation import _solve_films
 from frbcli.solve.films.steps import begin_stage, make_work
 from frbcli.solve.stage.equations import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, X_0, U
-from frbcli.solve.state import METHODS, RUNNING, State, make_output
+from frbcli.solve.state import METHODS, State, make_output
 from frbcli.solve.time_loop import advance
 
 COUPLED = ("bearing.channels=coupled", "accuracy.mesh=[5,32]", "output.step=1e-4")
@@ -56,18 +57,6 @@ def system_of(case: Case, change: Callable[[Channel], Channel] = lambda channel:
     data = volume_films(system.films.with_fields)
     films = replace(system.films, data=with_channels(data, system.films.with_fields, channels))
     return replace(system, films=films)
-
-
-def run(case: Case, system: System) -> tuple[State, State]:
-    """The first and the last state of a run-up."""
-    profile, plan = run_up_profile(case), make_plan(case)
-    first, state = first_state(case.start, system, profile), first_state(case.start, system, profile)
-    output, written, status = make_output(1000, system.rotor.size, 2), 0, RUNNING
-    parts = rotor_data(system, profile), system.films.loop, METHODS[plan.method].tableau, control_of(case, plan)
-    while status == RUNNING:
-        status, fresh = advance(*parts, state, 10**6, output.after(written))
-        written += fresh
-    return first, state
 
 
 @njit
@@ -92,7 +81,8 @@ def feed_hole_pressures(system: System, state: State) -> tuple[float, float]:
 def test_oil_that_leaves_one_film_enters_the_other(supply: tuple[str, ...]) -> None:
     case = ringed(*AT_END[: len(supply)], *TWO_PHASE, *SHORT)
     system = make_system(case, make_plan(case))
-    first, last = run(case, system)
+    first = first_state(case.start, system, run_up_profile(case))
+    _, last = run_up(case, make_plan(case), system)
     feed_holes = system.films.loop.feed_holes  # type: ignore[union-attr]
     sizes = [film.section.copies * film.section.radius * film.section.width * film.section.clearance
              for film in system.films.with_fields]  # fmt: skip
@@ -150,7 +140,7 @@ def test_films_at_rest_are_a_network(resistance: float) -> None:
 
     p_o = float(brentq(left, 0.0, supplied, xtol=1e-6 * supplied))
     p_i = p_o * through / leak
-    found = feed_hole_pressures(system, run(case, system)[1])
+    found = feed_hole_pressures(system, run_up(case, make_plan(case), system)[1])
     assert found == pytest.approx((p_i, p_o), rel=2e-4, abs=1e-4 * supplied)
     assert 0.3 * supplied < p_o < 0.6 * supplied
 

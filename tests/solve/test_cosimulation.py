@@ -12,7 +12,6 @@ import pytest
 from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
-from frbcli.errors import InputError
 from frbcli.runs.march import control_of
 from frbcli.runs.run import runup
 from frbcli.runs.start import first_state, in_turn, micro_cost, rotor_data
@@ -101,17 +100,6 @@ def test_the_case_chooses_the_coupling() -> None:
     assert (plan.coupling, plan.macro_step) == ("co-simulation", 2e-6)
     assert make_plan(load_case("jeffcott", ["film.coupling=monolithic"])).macro_step is None
     assert {chosen_coupling("auto", cavitation) for cavitation in ("penalty", "peeken")} <= set(COUPLINGS)
-
-
-@pytest.mark.parametrize("coupling", ["dynamic-static", "dynamic-static-semi-implicit"])
-def test_oil_that_is_kept_is_no_static_film(coupling: str) -> None:
-    with pytest.raises(InputError, match="is mass-conserving"):
-        make_plan(load_case("jeffcott", ["film.cavitation=two-phase", f"film.coupling={coupling}"]))
-
-
-def test_cells_are_not_solved_in_one_go() -> None:
-    with pytest.raises(InputError, match="is a finite-volume film"):
-        make_plan(load_case("jeffcott", ["film.cavitation=reynolds", "film.coupling=dynamic-static-semi-implicit"]))
 
 
 QUICK = ("speed.duration=0.02 s", "speed.from=20 Hz", "speed.to=22 Hz", "output.step=1e-4 s", "accuracy.mesh=[4, 48]")

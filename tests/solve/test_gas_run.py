@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from test_cells_run import Array, case_of, planned, run
+from marches import planned, run_up
+from test_cells_run import Array, case_of
 
 from frbcli.case.schema import Case
 from frbcli.film.cells.balance.balances import GAS_IN, GAS_OUT, GAS_RELEASED
@@ -67,8 +68,8 @@ def test_all_gas_is_accounted_for_in_every_step(shell: tuple[str, ...]) -> None:
 def test_pauses_do_not_change_a_run_with_gas() -> None:
     case = fed(*SLOW, "speed.duration=0.01s")
     plan, system = planned(case)
-    whole, end = run(case, plan, system)
-    pieces, paused = run(case, plan, system, budget=3)
+    whole, end = run_up(case, plan, system)
+    pieces, paused = run_up(case, plan, system, budget=3)
     np.testing.assert_array_equal(pieces, whole)
     np.testing.assert_array_equal(paused.wet, end.wet)
 
@@ -102,7 +103,7 @@ def test_a_small_whirl_grows_as_the_linearised_film_says() -> None:
     begun = first_state(case.start, system, run_up_profile(case))
     pushed = first_state(case.start, system, run_up_profile(case))
     pushed.v[0] += 0.3 * system.clearances[0]
-    courses = [run(case, plan, system, state)[0][:, :2] for state in (pushed, begun)]
+    courses = [run_up(case, plan, system, state)[0][:, :2] for state in (pushed, begun)]
     apart = (courses[0] - courses[1])[60:]
     lag = 8
     map_, *_ = np.linalg.lstsq(apart[:-lag], apart[lag:], rcond=None)

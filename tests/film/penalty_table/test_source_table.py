@@ -13,7 +13,6 @@ import frbcli
 from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.cycles.method.follower import other_films
-from frbcli.errors import InputError
 from frbcli.film.cavitation.conditions import Reynolds
 from frbcli.film.cells.film import Motion, VolumeFilm
 from frbcli.film.cells.linearised import film_at
@@ -160,12 +159,6 @@ def test_runs_agree_with_those_on_cells(reading: str, tmp_path: Path) -> None:
         error = run.error["film_force_relative"]
         assert error is not None
         assert error < 2e-2
-
-
-def test_a_table_that_cannot_be_is_refused() -> None:
-    for name, *settings in (("axial-groove", "film.cavitation=penalty"), ("jeffcott", "film.cavitation=elrod")):
-        with pytest.raises(InputError, match=r"film\.solution"):
-            make_plan(load_case(name, [*settings, "film.solution=table"]))
 
 
 def test_half_the_nodes_and_more_cells_show_the_error_of_a_table(tabulated: tuple[SourceFilm, FilmData]) -> None:

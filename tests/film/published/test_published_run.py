@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from marches import planned, run_up
 from paths import DATA
 
 import frbcli
-from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.film.cells.balance.balances import CREATED
@@ -20,13 +20,10 @@ from frbcli.film.cells.film import Motion
 from frbcli.film.cells.loads import loads
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.runs.march import control_of
-from frbcli.runs.start import first_state, rotor_data
-from frbcli.scene.machine.system import System, make_system
+from frbcli.runs.start import first_state
 from frbcli.scene.planning.cell_choice import run_up_profile
 from frbcli.scene.planning.film_choice import Plan
-from frbcli.scene.planning.plan import make_plan
-from frbcli.solve.state import FINISHED, METHODS, RUNNING, Control, State, make_output
-from frbcli.solve.time_loop import advance
+from frbcli.solve.state import Control
 
 SHORT = ["speed.from=30Hz", "speed.to=30Hz", "speed.duration=0.02s", "output.step=0.5ms", "accuracy.mesh=[6,40]"]
 PUBLISHED = ["film.cavitation=two-phase", "film.two-phase.form=published"]
@@ -43,27 +40,6 @@ def case_of(*settings: str, name: str = "jeffcott") -> Case:
     return load_case(name, [*SHORT, *PUBLISHED, *settings])
 
 
-def planned(case: Case) -> tuple[Plan, System]:
-    plan = make_plan(case)
-    return plan, make_system(case, plan)
-
-
-def run(case: Case, plan: Plan, system: System, control: Control | None = None) -> tuple[Array, State]:
-    """Displacements (rows, n) at the output times, and the last state."""
-    profile = run_up_profile(case)
-    state, n = first_state(case.start, system, profile), system.rotor.size
-    output = make_output(2000, n, len(system.names))
-    status, written = RUNNING, 0
-    tableau, rotor = METHODS[plan.method].tableau, rotor_data(system, profile)
-    while status == RUNNING:
-        status, fresh = advance(
-            rotor, system.films.loop, tableau, control or control_of(case, plan), state, 10**6, output.after(written)
-        )
-        written += fresh
-    assert status == FINISHED
-    return output.q[:written], state
-
-
 def fixed_steps(case: Case, plan: Plan, steps: int) -> Control:
     """Equal steps, a number of them in the whole run."""
     return control_of(case, plan)._replace(tolerance=1e-2, longest_step=case.speed.duration / steps)
@@ -72,9 +48,9 @@ def fixed_steps(case: Case, plan: Plan, steps: int) -> Control:
 def test_a_full_film_is_that_of_the_other_forms() -> None:
     case, other = case_of(*FULL, "accuracy.mesh=[10,96]"), load_case("jeffcott", [*SHORT, *FULL])
     plan, system = planned(case)
-    found, state = run(case, plan, system)
+    found, state = run_up(case, plan, system)
     linear = other.with_settings({"film.cavitation": "sommerfeld", "accuracy.mesh": None})
-    expected, _ = run(linear, *planned(linear))
+    expected, _ = run_up(linear, *planned(linear))
     assert np.max(np.abs(found)) > 0.5 * system.clearances[0]
     assert np.max(np.abs(found - expected)) < 5e-3 * system.clearances[0]
     assert np.all(state.wet[OIL] > 0.0)
@@ -86,7 +62,7 @@ def test_order_of_the_time_steps() -> None:
     case = case_of("film.two-phase.steepness=0.5", "bearing.ends=oil-bath", "start.displacement=[0.1,-0.3]",
                    "speed.duration=0.004s", "bearing.supply.pressure=2bar", "accuracy.target=3e-3")  # fmt: skip
     plan, system = planned(case)
-    ends = [run(case, plan, system, fixed_steps(case, plan, steps))[1].q for steps in (8, 16, 128)]
+    ends = [run_up(case, plan, system, control=fixed_steps(case, plan, steps))[1].q for steps in (8, 16, 128)]
     errors = [float(np.max(np.abs(end - ends[-1]))) for end in ends[:2]]
     assert errors[0] < 1e-2 * system.clearances[0]
     assert math.log2(errors[0] / errors[1]) > 2.0
@@ -96,7 +72,7 @@ def test_the_oil_that_it_creates_is_told() -> None:
     """At rest the run creates oil at the rate that the film alone does."""
     case = case_of("start.position=resting", "rotor.unbalance=0 kg*m", SOFT, "speed.duration=0.02s")
     plan, system = planned(case)
-    q, end = run(case, plan, system)
+    q, end = run_up(case, plan, system)
     (film,) = system.films.with_fields
     d = system.rotor.journals[0] @ q[-1] / system.clearances[0]
     motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), float(run_up_profile(case).speeds[0]))
