@@ -30,6 +30,7 @@ from frbcli.compiled import compiled, counted
 from frbcli.runs.run import runup
 from frbcli.scene.cost import compile_s
 from frbcli.solve import time_loop
+from frbcli.studies.accuracy import by_theory
 
 
 def answer(folder: Path) -> tuple[float, int]:
@@ -191,6 +192,14 @@ def test_arrays_that_kernels_make_have_one_who_counts_their_references() -> None
             assert counts[given] == {"makes_arrays=True" in decorator}, f"{name} calls {given}"
 
 
+def test_functions_chosen_by_types_become_no_machine_code_by_themselves() -> None:
+    """numba compiles them once more than they are used, to know what they return, also those put into their callers."""
+    files = Path(frbcli.__file__).parent.rglob("*.py")
+    chosen = [one for file in files for one in re.findall(r"(?m)^@overload\(.*", file.read_text(encoding="utf-8"))]
+    assert '@overload(end_flow, jit_options=AS_KERNELS, inline="always")' in chosen
+    assert [one for one in chosen if "jit_options=AS_KERNELS" not in one] == []
+
+
 MORE = [pytest.param(name, marks=pytest.mark.nightly) for name in ("floating-ring", "rigid-two-phase")]
 
 
@@ -243,6 +252,24 @@ def test_kernels_that_are_on_disk_make_the_announced_time_the_most(
     assert not time_loop.some_are_kept()
     (tmp_path / "time_loop._advance-174.py311.nbi").touch()
     assert time_loop.some_are_kept()
+
+
+def test_a_comparison_compiles_for_all_of_its_films() -> None:
+    tables, cells = load_case("jeffcott"), load_case("jeffcott", ["film.cavitation=elrod"])
+    assert compile_s([tables, cells, cells]) == compile_s([tables]) + compile_s([cells])
+
+
+def test_films_at_rest_need_no_time_loop_with_rings_and_heat() -> None:
+    rings, cells = load_case("floating-ring-heat"), load_case("jeffcott-two-phase")
+    rest = compile_s([cells], "rest")
+    assert compile_s([rings, cells], "rest") == rest < 0.5 * compile_s([cells])
+    assert compile_s([cells], "both") == rest + compile_s([cells])
+
+
+def test_a_ladder_with_short_bearings_compiles_a_second_time_loop() -> None:
+    tables, cells = load_case("jeffcott"), load_case("jeffcott-two-phase")
+    assert compile_s([tables, *by_theory(tables)]) == 2.0 * compile_s([tables])
+    assert compile_s([cells, *by_theory(cells)]) == compile_s([cells])
 
 
 @pytest.mark.nightly

@@ -43,6 +43,18 @@ def test_a_trial_ends_after_ten_revolutions() -> None:
     assert turned == pytest.approx(10.0, rel=1e-3)
 
 
+@pytest.mark.parametrize("target", [1e-2, 4.5e-3, 1e-3])
+def test_the_finer_run_of_a_trial_has_other_places_of_the_openings(target: float) -> None:
+    _, trial = trial_of(RINGS, f"accuracy.target={target!r}")
+    assert trial is not None
+    assert trial.plan.cells is not None
+    assert trial.finer.cells is not None
+    assert trial.finer.cells[0] >= 1.5 * trial.plan.cells[0]
+    assert trial.finer.cells[0] % 3 != 0
+    assert trial.finer.cells[1] >= trial.plan.cells[1]
+    assert trial.finer.tolerance < trial.plan.tolerance
+
+
 @pytest.mark.parametrize(
     ("name", "settings"),
     [
@@ -78,6 +90,22 @@ def test_a_trial_tells_one_to_five_times_the_true_error() -> None:
     true = float(np.abs(own - exact).max())
     assert true < found.error < 5.0 * true
     assert expected_error(trial.plan).eccentricity > 4.0 * true  # what the number of cells alone tells
+
+
+def test_a_trial_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    case, trial = trial_of(RINGS, *LOOSE)
+    assert trial is not None
+    first = tried.tried_error(case, trial)
+
+    def fails(*_: object) -> float:
+        raise AssertionError
+
+    monkeypatch.setattr(tried, "_difference", fails)
+    assert tried.tried_error(case, trial) == first
+    other, its_trial = trial_of(RINGS, *LOOSE, "rotor.unbalance=3.5 g*mm")
+    assert its_trial is not None
+    with pytest.raises(AssertionError):
+        tried.tried_error(other, its_trial)
 
 
 @pytest.mark.parametrize("value", [0.0, math.nan])

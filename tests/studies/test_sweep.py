@@ -122,6 +122,22 @@ def test_each_point_is_the_run_it_would_be_alone(case: Case, tmp_path: Path) -> 
     assert not np.array_equal(read_run(found.points[0].run or "")["eccentricity"], alone["eccentricity"])
 
 
+def test_one_point_of_each_kind_is_compiled_before_the_processes_start(
+    case: Case, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of two points that differ in a number one is enough; rough surfaces and a start at rest have kernels of their
+    own, which all processes would compile at the same time."""
+    rough = ("contact.model=asperities", "contact.roughness=0.5 um", "contact.summit_radius=20 um",
+             "contact.summit_density=4e10 1/m^2")  # fmt: skip
+    points = (), ("oil.viscosity=8 mPa*s",), rough, (*rough, "oil.viscosity=8 mPa*s"), ("start.position=resting",)
+    compiled: list[Case] = []
+    monkeypatch.setattr(study, "solve", lambda task: compiled.append(task.case))
+    study._compile([Task(n, {}, case.with_settings(*given), "runup", None) for n, given in enumerate(points, 1)])
+    assert [(each.contact.rough, each.start.position) for each in compiled] == [
+        (False, "centre"), (True, "centre"), (False, "resting"),
+    ]  # fmt: skip
+
+
 def test_runs_that_are_not_kept_leave_nothing(case: Case, tmp_path: Path) -> None:
     found = sweep(case, {"oil.viscosity": VISCOSITIES}, tmp_path / "s", keep_runs=False, workers=TWO)
     assert [point.status for point in found.points] == ["finished", "finished"]

@@ -133,8 +133,7 @@ RULES = (
 
 
 def faults(case: Case, analysis: str = FILMS) -> list[Fault]:
-    """Every reason why an analysis of a case is refused. Raises InputError if this process does not have the bearing
-    model of the case."""
+    """Every reason why an analysis of a case is refused."""
     if alone := without_bearing(case):  # no other rule has a subject
         return alone
     reasons: list[Fault] = []

@@ -7,12 +7,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cells.balance.balances import FLOWS, GridMotion, balances
+from frbcli.film.cells.balance.grid_motion import seen_by_grid
+from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, STATES, cell_states, follow_law
+from frbcli.film.cells.block_cyclic import ENTRIES
+from frbcli.film.cells.data import ALL_SIDES, SIDES, volume_films
 from frbcli.film.cells.film import Motion, VolumeFilm, fitted_grid, reference_pressure
 from frbcli.film.cells.loads import FilmLoads, loads
+from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.tilted_film import lands, summed
 from frbcli.film.gap import Hole, Section
@@ -25,6 +32,7 @@ LAWS: dict[str, Law] = {
     "two-phase": TwoPhase(0.9),
 }
 HOLES = (Hole(1.0, 0.005, 0.2, 0.0025, 1.5e5, True), Hole(-2.0, 0.0095, 0.15, 0.0012, 0.5e5, False))
+M, K = 30, 6
 R, B, C, ETA = 0.01, 0.012, 40e-6, 0.01
 PLAIN = Section(R, B, B, C, ETA, 1e5, 1e5, 1, "oil-bath", "oil-bath")
 MOVED = Motion((0.2, -0.35), (120.0, 40.0), 900.0, (0.4, 0.3), (-60.0, 90.0))
@@ -38,6 +46,32 @@ def solved(section: Section, law: Law, motion: Motion, cells: tuple[int, int] = 
 
 def six(found: FilmLoads) -> np.ndarray:
     return np.array([*found.force, *found.moment])
+
+
+@pytest.mark.parametrize("ends", [("oil-bath", "groove"), ("free-to-air", "oil-bath")])
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+def test_derivatives_by_both_ends_sum_up_to_those_by_the_velocity(law: Law, ends: tuple[str, str]) -> None:
+    section = Section(0.0125, 0.01, 0.02, 40e-6, 0.01, 1e5, 0.9e5, 2, *ends, 0.7e5, holes=HOLES)
+    grid = volume_grid(section, np.linspace(0, 2 * np.pi, M + 1), np.linspace(0, 1, K + 1))
+    film, motion = VolumeFilm(section, grid, law, 500.0), Motion((0.3, -0.5), (0.0, 0.0), 300.0)
+    data, random, numbers = volume_films([film]), np.random.default_rng(2), np.empty(LAW_NUMBERS)
+    w, past = random.uniform(-0.6, 0.6, (M, K)), random.uniform(0.0, 3e3, (M, K))
+    parts = data.films[0], data.ring[0], data.places[0], data.cells[0]
+    states = np.zeros((STATES, M, K))
+    follow_law(parts[0], *motion.d, 0.0, 0.0, motion.omega, numbers)
+    cell_states(parts[0], parts[3], numbers, 0.0, w, states)
+    states[BEFORE_UPSTREAM] = random.uniform(0.0, 1.0, (M, K))
+    stencil, right, flows = np.zeros((ENTRIES, M, K)), np.zeros((M, K, K + SIDES)), np.zeros(FLOWS)
+    own_stencil, own, own_flows = np.zeros((ENTRIES, M, K)), np.zeros((M, K, K + ALL_SIDES)), np.zeros(FLOWS)
+    for g in (0.0, 2.0):
+        balances(*parts, states, GridMotion(*motion.d, motion.omega, g=g), past, stencil, right, flows)
+        balances(*parts, states, seen_by_grid(motion, g, by_ends=True), past, own_stencil, own, own_flows)
+        sides = own[:, :, [K, K + 1, K + 2]]
+        sides[:, :, 1:] += own[:, :, K + 3 :]
+        pairs = {"stencil": (own_stencil, stencil), "flows": (own_flows, flows)}
+        pairs |= {f"side {i}": (sides[:, :, i], right[:, :, K + i]) for i in range(SIDES)}
+        for name, (found, expected) in pairs.items():
+            assert np.allclose(found, expected, rtol=1e-10, atol=1e-11 * np.abs(expected).max()), name
 
 
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)

@@ -22,6 +22,8 @@ from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution, fitted_gr
 from frbcli.film.cells.loads import force, oil_balance
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
+from frbcli.scene.gate.gate import require
+from frbcli.scene.gate.rule import BEARING, LADDER, RUN, SPEED_CYCLES, STABILITY, WHIRLS
 
 NEVER = 1e12  # s
 SUPPLIES = ("circumferential-groove", "axial-groove")
@@ -134,6 +136,16 @@ def test_rotation_states_the_balance_of_the_gas() -> None:
     assert gas.released_m3_s == pytest.approx(gas.out_m3_s, rel=1e-9)
     assert np.isnan(table["free_gas"][0])
     assert table["free_gas"][1] == gas.share > 0.0
+
+
+def test_all_analyses_follow_gas() -> None:
+    case = frbcli.load_case("rigid", ["film.cavitation=bubbly"])
+    with pytest.raises(frbcli.InputError, match="saturation_pressure = 1000 bar: is above 100 bar"):
+        frbcli.make_plan(case.with_settings({"film.bubbly.saturation_pressure": "1000 bar"}))
+    unbalanced = case.with_settings({"rotor.unbalance": "3 g*mm"})
+    assert require(unbalanced, WHIRLS) is None  # type: ignore[func-returns-value]
+    for analysis in (BEARING, STABILITY, RUN, LADDER, SPEED_CYCLES):
+        assert require(case, analysis) is None  # type: ignore[func-returns-value]
 
 
 # An enclosed film, closed at both ends; its journal is squeezed by a small amplitude.
