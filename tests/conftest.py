@@ -52,7 +52,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def perturbed_round_off(request: pytest.FixtureRequest) -> Iterator[None]:
     """Matrices are off by 1e-15 of their size, see round_off.py."""
     seed, folder = request.config.getoption("--round-off"), request.path.relative_to(TESTS).parts[0]
-    if not seed or not (folder in ROUND_OFF or request.config.getoption("--round-off-everywhere")):
+    everywhere = request.config.getoption("--round-off-everywhere") and not request.node.get_closest_marker("bitwise")
+    if not seed or not (folder in ROUND_OFF or everywhere):
         yield
         return
     with round_off.on(request.node.nodeid, seed):

@@ -307,6 +307,7 @@ def without_spins(rotor: LinearRotor, speeds: Array) -> LinearRotor:
 
 GROUND = ""
 HELD = 1e-10  # over the length of a port: where it rests
+SINGULAR, SCALINGS = 1e13, 4  # condition number of balanced matrices, and the passes that balance them
 
 
 @dataclass(frozen=True)
@@ -453,13 +454,21 @@ def held_rotor(rotor: LinearRotor, omega: float = 0.0) -> HeldRotor:
     given = np.zeros((n + count, 1 + count))
     given[:n, 0] = load
     given[n:, 1:] = np.eye(count)
-    try:
-        solution = np.linalg.solve(held, given)
-    except np.linalg.LinAlgError:
-        raise NotConverged(
-            "The bearings do not hold the rotor: it can turn about them. Give them different positions."
-        ) from None
+    scales = _scales(held)
+    scaled = scales[:, None] * held * scales
+    if not np.linalg.cond(scaled) < SINGULAR:  # a factorisation would find it singular or not by its last digits
+        raise NotConverged("The bearings do not hold the rotor: it can turn about them. Give them different positions.")
+    solution = scales[:, None] * np.linalg.solve(scaled, scales[:, None] * given)
     return HeldRotor(solution[n:, 0], -solution[n:, 1:], solution[:n, 0], solution[:n, 1:])
+
+
+def _scales(matrix: Array) -> Array:
+    """(n,) factors of rows and columns with which the largest entries of a symmetric matrix are near 1."""
+    scales = np.ones(len(matrix))
+    for _ in range(SCALINGS):
+        largest = np.abs(scales[:, None] * matrix * scales).max(axis=1)
+        scales = scales / np.sqrt(np.where(largest > 0.0, largest, 1.0))
+    return scales
 
 
 def _held_at_ports(rotor: LinearRotor, omega: float) -> HeldRotor:

@@ -5,8 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from frbcli.case.reading.load import load_case
+from frbcli.errors import NotConverged
 from frbcli.rotor.assembly import Link, assembled, held_rotor, point_mass
 from frbcli.rotor.loads import LinearPart
+from frbcli.scene.machine.rotor import make_rotor
 
 GRAVITY = 9.81
 
@@ -38,3 +41,14 @@ def test_an_element_sees_the_coordinates_that_it_asks_for() -> None:
 def test_a_node_that_no_body_has() -> None:
     with pytest.raises(KeyError):
         assembled([point_mass("journal", 2.0, GRAVITY)], [Link("journal", "housing")])
+
+
+def test_bearings_at_one_place_hold_no_rotor_whatever_the_last_digits_say() -> None:
+    """On the shaft of a turbocharger; a micrometre apart they hold it, and carry its weight together."""
+    at = "bearing.1.position={} mm"
+    rotor, apart = (make_rotor(load_case("turbocharger-car", [at.format(place)])) for place in ("42", "42.001"))
+    with pytest.raises(NotConverged, match="different positions"):
+        held_rotor(rotor)
+    carried = held_rotor(apart).load.reshape(-1, 2).sum(axis=0)
+    placed = held_rotor(make_rotor(load_case("turbocharger-car"))).load.reshape(-1, 2).sum(axis=0)
+    assert carried == pytest.approx(placed, rel=1e-6)

@@ -53,6 +53,7 @@ def test_the_oil_and_the_place_of_each_moment_are_those_of_the_signals(kept: Run
     assert film.oil[film.gas > 0.02].mean() < film.oil[film.gas < 0.002].mean() - 0.01
 
 
+@pytest.mark.bitwise
 def test_a_run_with_kept_films_is_the_same_and_may_be_resumed(kept: Run, tmp_path: Path) -> None:
     """Bit for bit, with the films that it has kept."""
     plain = runup(case_of(), tmp_path / "plain.h5")

