@@ -1,7 +1,7 @@
 """The rotors of a case: rigid (2.3), Jeffcott (2.4) and turbocharger.
 
 A symmetric rotor lies in two equal bearings, of which a case describes one; another one has a shaft of sections.
-`frbcli/scene/shafts/` makes bodies of them.
+`frbcli/scene/machine/` makes bodies of them.
 """
 
 from __future__ import annotations
