@@ -206,7 +206,6 @@ class KinematicResult:
         return self.plan.theory
 
 
-
 @dataclass(frozen=True, repr=False)
 class KinematicTest(Tabular):
     """A test, "rotation", "squeeze" or "whirl", with one result per cavitation model, in their order; complete: not

@@ -2,7 +2,7 @@
 besides commands and options: shipped cases, files, keys of a case; and the look of pictures, by options of all commands
 that draw: size, resolution, limits, speeds per minute.
 
-The files of a command: those that it reads, where its results go, and that these do not replace those.
+The files of a command are options, too: those that it reads, and where its results go, which do not replace them.
 """
 
 from __future__ import annotations
@@ -50,6 +50,7 @@ class Command(click.Command):
             if rows:
                 with formatter.section(name):
                     formatter.write_dl(rows)
+
 
 PER_MINUTE = "frbcli.per_minute"  # of the context: whether an option gives a speed in rpm
 _LOOK = "frbcli.look"
@@ -389,6 +390,7 @@ def _option(name: str, field: str, **settings: Any) -> Callable[[Function], Func
 
 
 _READS, _FORCE = "frbcli.reads", "frbcli.force"  # in the context of a command
+
 
 class InputFile(click.Path):
     """A file that the command reads, as a Path; no result of the command replaces it."""

@@ -3,7 +3,7 @@
 Kernels are compiled at the first start and kept next to their sources.
 
 The picture and the table of a command: their options, their places, which are checked before the work, and how they
-written. A picture next to results never affects them: a failure is a remark.
+are written. A picture next to results never affects them: a failure is a remark.
 """
 
 from __future__ import annotations

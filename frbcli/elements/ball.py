@@ -47,7 +47,7 @@ from frbcli.units import display
 
 SMALL_APPROACH = 1e-6  # m
 PER_TURN = 1e6 * 30.0 / math.pi  # nu n in mm^2/s rpm of nu omega in m^2/s rad/s
-DENTED = 4.2e9  # Pa, Hertz pressure of the static load rating of ball bearings (ISO 76): a dent of 1e-4 of a ball
+RATING_PRESSURE = 4.2e9  # Pa, of a static load rating (ISO 76): a dent of 1e-4 of the ball diameter
 MEAN_POINTS = 24  # at which balls that are spread evenly are summed, at least; twice as many balls are as good
 
 

@@ -343,7 +343,6 @@ class GapTable:
             inverse_gap,
         )
 
-
     def torques(self, gaps: Array) -> Array:
         """(k,) T / (eta omega) in m^3 at gaps in m."""
         return np.asarray(np.exp(chebyshev.chebval(self._scaled(gaps), self.coefficients[:, 1])))

@@ -116,7 +116,6 @@ SHEET = (
 )  # fmt: skip
 
 
-
 def _mixed(name: str) -> Callable[[Any], Any]:
     return lambda state: math.nan if state.mixed is None else getattr(state.mixed, name)
 
@@ -165,7 +164,6 @@ MODES = (
            key="error.frequency_Hz"),
     Column("growth_error", "1/s", "expected error", attrgetter("error"), key="error.growth_1_s"),
 )  # fmt: skip
-
 
 
 def _size(motion: Any) -> Any:

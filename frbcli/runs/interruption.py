@@ -1,7 +1,5 @@
-"""Ctrl-C at times at which the state of a run is consistent.
-
-The state of a checkpoint, checked against the machine of the run, since the compiled time loop does not check it.
-"""
+"""Runs that are interrupted and go on. Ctrl-C is heard at times at which the state of a run is consistent; the state of
+a checkpoint is checked against the machine of the run, since the compiled time loop does not check it."""
 
 from __future__ import annotations
 

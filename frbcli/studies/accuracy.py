@@ -2,8 +2,6 @@
 
 Differences are between two runs of the same machine at each time, until a whirl grows. They also check the stated
 error of a run: by one with shorter steps, and one with rotor and films solved together.
-
-A ladder of speed against error: ways to compute a run, cost and error of each, Pareto's front.
 """
 
 from __future__ import annotations
@@ -41,6 +39,15 @@ from frbcli.scene.planning.film_choice import DEFAULT_MESH, Plan
 from frbcli.scene.planning.plan import THEORIES, make_plan
 
 RESOLVED = 0.01  # Hz; resolution of the terminal's table
+INTERRUPTED = "interrupted"
+COMMANDS = {"runup": runup, "rundown": rundown}
+MESHES = (0.5, 1.0, 1.5)  # of the plan's elements or cells in each direction
+TOLERANCES = (100.0, 10.0, 1.0, 0.1)  # of the plan's
+LOOSEST = 0.1  # tolerance that a case may have
+REFERENCE_MESH, REFERENCE_TOLERANCE = 2.0, 0.02
+COARSER_MESH, LOOSER = 1.5, 2.0  # second reference: factors of the plan's elements, and of the tolerance
+FINITE = "finite"
+TICKS_s = 0.02  # clocks of CPU time advance by 4 ms on some machines, and say 0 of shorter work
 
 
 @dataclass(frozen=True)
@@ -176,10 +183,8 @@ RESULT = (
            shown=(Shown("thr.", _difference),), key="error.threshold_Hz"),
     Column("film_force_relative", "", "relative error of the film forces", attrgetter("error.force_relative"),
            shown=(Shown("force", short_number),), key="error.film_force_relative"),
-    Column("stated", "", "stated error of the eccentricity", lambda item: item.stated.get("eccentricity"),
-           key=""),
-    Column("work", "s", "CPU time by the number of film solves", attrgetter("work_s"),
-           key=""),
+    Column("stated", "", "stated error of the eccentricity", lambda item: item.stated.get("eccentricity"), key=""),
+    Column("work", "s", "CPU time by the number of film solves", attrgetter("work_s"), key=""),
 )  # fmt: skip
 
 # Of a RungResult and whether it is on Pareto's front
@@ -191,16 +196,6 @@ LADDER_COLUMNS = (
     Column("on_front", "", "no cheaper one has a smaller error", itemgetter(1), key="pareto"),
 )  # fmt: skip
 
-
-INTERRUPTED = "interrupted"
-COMMANDS = {"runup": runup, "rundown": rundown}
-MESHES = (0.5, 1.0, 1.5)  # of the plan's elements or cells in each direction
-TOLERANCES = (100.0, 10.0, 1.0, 0.1)  # of the plan's
-LOOSEST = 0.1  # tolerance that a case may have
-REFERENCE_MESH, REFERENCE_TOLERANCE = 2.0, 0.02
-COARSER_MESH, LOOSER = 1.5, 2.0  # second reference: factors of the plan's elements, and of the tolerance
-FINITE = "finite"
-TICKS_s = 0.02  # clocks of CPU time advance by 4 ms on some machines, and say 0 of shorter work
 
 Observer = Callable[[Rung, int, int, Progress], None]
 

@@ -37,7 +37,6 @@ from frbcli.runs.run import rundown, runup
 FEWEST = 4  # speeds that both runs have
 
 
-
 def _size(deviation: tuple[str, float, float], value: float) -> str:
     if math.isnan(value):
         return "-"
@@ -163,6 +162,7 @@ ASKED_EVERY_s = 0.2  # how far runs are, and whether Ctrl-C was pressed
 STOP = "stop"  # file by which all runs are to end
 Report = Callable[[int, Progress], None]
 Ended = Run | KeyboardInterrupt | NotConverged | InputError
+
 
 @dataclass(frozen=True)
 class RunTask:

@@ -116,6 +116,7 @@ def _ramp(folder: Path, rate: float, unbalance: float) -> Run:
     settings = ("speed.from=100 Hz", "speed.to=185 Hz", f"speed.duration={85.0 / rate} s", "output.step=0.2 ms")
     return runup(load_case("jeffcott", [*settings, f"rotor.unbalance={unbalance} g*mm"]), folder / "run.h5")
 
+
 SHORT = {(24.0, 10), (24.0, 50), (5.0, 15), (5.0, 40)}  # ramp in Hz/s, unbalance in g mm
 
 

@@ -37,6 +37,8 @@ POSITIONS = [
     for row in rows("equilibrium-models.csv")
     if (row["clearance_um"], row["speed_Hz"]) in {("40", "10"), ("40", "60"), ("35", "120")}
 ]
+
+
 def model_of(row: dict[str, str]) -> tuple[str, list[str]]:
     """Its name in a case, and the settings for its parameters."""
     words = row["cavitation"]

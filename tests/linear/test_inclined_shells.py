@@ -14,6 +14,8 @@ from frbcli.linear.stability import stability_points
 SPEED, CLEARANCE, WIDTH, MRAD = 50.0, 35e-6, 0.02, 0.5
 SHELL = 'bearing.misalignment=["{} mrad", "{} mrad"]'
 FINITE = "film.theory=finite"
+
+
 def at_rest(*settings: str) -> FilmState:
     (point,) = bearing_sheet(load_case("jeffcott", [FINITE, *settings]), [SPEED]).points
     assert not point.problem

@@ -41,6 +41,8 @@ diameter = "7 mm"
 clearance = "15 um"
 ends = "oil-bath"
 """
+
+
 def plain_turbocharger() -> frbcli.Case:
     text = frbcli.load_case("turbocharger-car").source_text
     start, end = text.index("[[bearing]]"), text.index("[oil]")

@@ -27,6 +27,8 @@ from frbcli.rotor.assembly import COORDINATES, PLANE, without_spins
 from frbcli.rotor.loads import speed_profile
 from frbcli.runs.start import state_at
 from frbcli.scene.forms.tilted import TiltedForm
+from frbcli.scene.gate.gate import faults
+from frbcli.scene.gate.rule import SPEED_CYCLES
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
@@ -340,6 +342,14 @@ def test_rings_that_tilt_in_films_that_keep_oil_grow_as_in_the_time_loop(monkeyp
 
 
 # -------------------------------------------------------------------------------------------------------------- case
+
+
+def test_limit_cycles_have_rings_that_tilt_in_films_that_keep_oil() -> None:
+    """Where no opening turns with a ring."""
+    for law in ("reynolds", "elrod", "two-phase"):
+        for body in ("rings", "cartridge"):
+            assert not faults(grooved(body, f"film.cavitation={law}"), SPEED_CYCLES)
+        assert "film.cavitation" in [fault.key for fault in faults(ringed(f"film.cavitation={law}"), SPEED_CYCLES)]
 
 
 def test_what_rings_that_tilt_do_not_have_is_refused() -> None:

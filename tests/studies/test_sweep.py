@@ -171,6 +171,7 @@ def test_a_threshold_alone_is_that_of_the_stability_with_all_errors(case: Case) 
     assert np.isnan(alone.points[0].films[0].error)
     assert whole.points[0].films[0].error > 0.0
 
+
 FEED_HOLES = 'bearing.supply={kind = "bores", count = 4, diameter = "2 mm", pressure = "1 bar"}'
 
 

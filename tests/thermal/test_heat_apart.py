@@ -15,6 +15,8 @@ from frbcli.runs.run import runup
 APART = "film.coupling=co-simulation"
 QUICK = ("speed.from=100 Hz", "speed.to=105 Hz", "speed.duration=4 ms", "output.step=1e-4 s", "rotor.unbalance=0",
          "accuracy.steps_per_revolution=2000")  # fmt: skip
+
+
 def both(tmp_path: Path, case: Case) -> tuple[Run, Run]:
     """Runs of a case: rotor and films together, and in turn."""
     runs = [runup(each, tmp_path / f"{i}.h5") for i, each in enumerate((case, case.with_settings(APART)))]

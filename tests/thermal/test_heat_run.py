@@ -129,6 +129,7 @@ def _outer(warm: object) -> np.ndarray:
     system = warm.system  # type: ignore[attr-defined]
     return np.asarray(warm.resting.journals[1] / system.clearances[1])  # type: ignore[attr-defined]
 
+
 SIGNALS = 'output.signals=["force", "film-thickness", "power", "torque", "oil-flow"]'
 
 
@@ -182,6 +183,7 @@ def test_heat_of_a_run_up_balances_by_its_signals(ring_run: Run) -> None:
     assert whole == pytest.approx(oil + housing + kept, rel=1e-3)
     assert ring_run.cost["heat_dissipated_J"] == pytest.approx(whole, rel=1e-3)
     assert ring_run.error["heat_balance_relative"] < 1e-9  # type: ignore[operator]
+
 
 COUPLED = [
     "bearing.channels=coupled", "film.cavitation=two-phase", "film.two-phase.steepness=0.9", "accuracy.mesh=[5,32]",

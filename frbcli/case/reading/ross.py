@@ -260,7 +260,6 @@ SAME_PLACE = 1e-6  # of the length of the shaft
 GIVE_SUPPORTS = "Give bearings [bearing.support], which takes any mass, stiffness and damping."
 
 
-
 @dataclass(frozen=True)
 class _Masses:
     """Point masses. nodes: their numbers; mass: (2 k,) kg, x and y of each; damping, stiffness: (2 k, 2 k)."""

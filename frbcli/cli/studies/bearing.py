@@ -262,7 +262,7 @@ def ball_sheet(
 
 def _show_balls(terminal: Terminal, sheet: BallSheet) -> None:
     from frbcli.columns import legend, table_of
-    from frbcli.elements.ball import DENTED
+    from frbcli.elements.ball import RATING_PRESSURE
     from frbcli.linear.columns import BALL_SHEET, BALLS, FREQUENCIES, STIFFNESSES
     from frbcli.units import display
 
@@ -272,9 +272,10 @@ def _show_balls(terminal: Terminal, sheet: BallSheet) -> None:
         for table, title in titles.items():
             terminal.show(title, table_of(BALL_SHEET, states), table)
     terminal.sentence(f"{legend(BALL_SHEET, BALLS)}. All per bearing, with one ball in the line of the load.")
-    dented = [state for state in sheet.points if max(state.inner_p_max, state.outer_p_max) > DENTED]
+    dented = [state for state in sheet.points if max(state.inner_p_max, state.outer_p_max) > RATING_PRESSURE]
     if dented:
-        terminal.sentence(f"Hertz pressures above {display(DENTED, 'Pa')} leave dents (ISO 76): {len(dented)} states.")
+        share, limit = f"{len(dented)} of {len(sheet.points)} states", display(RATING_PRESSURE, "Pa")
+        terminal.sentence(f"{share} have Hertz pressures above {limit}, which leave dents (ISO 76).")
     _show_problems(terminal, sheet.points)
 
 

@@ -1,6 +1,6 @@
 """Commands that use a measurement: `frb fit`, numbers of a case from a measured run; `frb balance`, correction masses.
 
-Options that say which columns of a measurement hold a motion, and the run that it makes."""
+Other commands share its options, which say what columns of a measurement hold a motion, and the run that it makes."""
 
 from __future__ import annotations
 

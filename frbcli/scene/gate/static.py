@@ -1,13 +1,5 @@
-"""Rules of bearing sheets, heat, stability and response: of machines at rest.
-
-Rules of limit cycles, and of whirls with the unbalance.
-
-The gate: one table of rules, each with the analyses that it holds for. Every analysis asks it before a film is made.
-
-A rule is a function of a case that yields the faults: key, value, problem, remedy. What a form of films or a coupling
-is not made for is in its own row, see `rules` in scene/forms/form.py and scene/course.py. `docs/matrix.md` is made by
-asking this gate.
-"""
+"""Rules of machines at rest: bearing sheets, heat, stability and response; of limit cycles, and of whirls with the
+unbalance."""
 
 from __future__ import annotations
 

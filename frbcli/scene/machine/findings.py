@@ -23,7 +23,7 @@ from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
 from frbcli.case.film import ColdClearance, FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, spaced, speed_shown
-from frbcli.elements.ball import DENTED, BallBearingElement
+from frbcli.elements.ball import RATING_PRESSURE, BallBearingElement
 from frbcli.elements.supports import DamperElement
 from frbcli.errors import NotConverged
 from frbcli.film.gap import (
@@ -154,7 +154,6 @@ class FilmTilt:
     def whirling(self) -> float:
         """Change of the gap at the ends in the widest conical whirl, over the clearance."""
         return self.reach * self.cone
-
 
     @property
     def change(self) -> float:
@@ -318,10 +317,11 @@ def _dented_balls(case: Case) -> Iterator[str]:
     """Ball bearings whose preload alone would dent them."""
     for element in BallBearingElement.of(case):
         pressure = element.rings.preload_pressure
-        if pressure > DENTED:
+        if pressure > RATING_PRESSURE:
+            shown = display(float(f"{pressure:.3g}"), "Pa")
             yield (
-                f"The preload alone makes a Hertz pressure of {display(pressure, 'Pa')} in {element.key}: "
-                f"balls leave dents above {display(DENTED, 'Pa')} (ISO 76)."
+                f"The preload alone makes a Hertz pressure of {shown} in {element.key}: "
+                f"balls leave dents above {display(RATING_PRESSURE, 'Pa')} (ISO 76)."
             )
 
 

@@ -4,9 +4,7 @@ All choices that the program makes for a run are made here, with their reasons; 
 
 Its expected error comes with it; a run states its own. Cases of thrust bearings alone have a plan of their own.
 
-Runs that show the error of another one: a second, coarser run, and two short ones before it begins.
-
-The difference of a run to a coarser one shows how uncertain its results are.
+The difference to a second, coarser run shows how uncertain the results of a run are.
 
 On the same cells the error differs by a factor of 10 to 20 between machines with rings (docs/accuracy.md). Two short
 runs from the beginning, on the cells of the plan and on more of them, show it.

@@ -32,6 +32,7 @@ TESTS = {"rotation": rotation, "squeeze": squeeze, "whirl": whirl}
 REFERENCES = "references.json"  # beside the list of hard cases
 OIL_LOST = 1e-3  # share of the oil that may be unaccounted for
 
+
 @dataclass(frozen=True)
 class Reference:
     """The result of the fine case. values: by name, at times_s of a run, one number each of a kinematic test; until_s:
