@@ -87,9 +87,10 @@ class Display:
         return NowAndThen(self)
 
     def counting(self, what: str = "") -> Callable[[int, int], None]:
-        """A function that shows a number of so many, and the time left.
+        """A function that shows a number of so many that are done, and the time left.
 
-        The time left is extrapolated from the numbers after the first one, which includes compilation.
+        The time left is extrapolated from the numbers after the first one, which includes compilation. The last
+        number is shown on a terminal only: nothing is left to wait for.
         """
         begun, first, announced, show = 0.0, 0, False, self.now_and_then()
 
@@ -99,6 +100,8 @@ class Display:
                 begun, first = time.monotonic(), number
             done, spent = number - first, time.monotonic() - begun
             left = spent / done * (count - number) if done else 0.0
+            if number == count and not self.redraws:
+                return
             long = not announced and spent > ANNOUNCED_s and left > LONG_s
             written = show(f"{what}{number} of {count}" + (f"  {_clock(left)} left" if done else ""), at_once=long)
             announced = announced or written

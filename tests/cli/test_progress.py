@@ -47,6 +47,16 @@ def test_without_a_terminal_a_line_comes_now_and_then(
     assert any(re.match(r"\d+ of 100: a rung: .*left$", line) for line in lines)
 
 
+def test_what_is_done_is_not_announced(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """One test whose kernels took a slow machine 40 s to compile ended with the line "1 of 1"."""
+    spent = [0.0]
+    monkeypatch.setattr(time, "process_time", lambda: spent[0])
+    observe = Display(Terminal()).counting()
+    spent[0] += progress.PRINT_EVERY_s + 10.0
+    observe(1, 1)
+    assert capsys.readouterr().err == ""
+
+
 @pytest.mark.parametrize(("each_s", "said"), [(0.4, ["4 of 120  0:46 left"]), (0.01, [])])
 def test_without_a_terminal_what_takes_long_is_announced(
     each_s: float, said: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
