@@ -205,10 +205,10 @@ class BallBearingKeys(BearingWithoutFilm):
     preload: AnyPreload = Field(
         default=0.0, description="axial, on each row: constant, by a spring, or `{offset}` of held rings"
     )
-    locating: Literal["left", "right"] | None = Field(
+    locating: Literal["left", "right", "both"] | None = Field(
         default=None,
-        description="side towards which its fixed outer ring holds the shaft: carries the load of [axial] next to its "
-        "preload",
+        description="carries the load of [axial] next to its preload: side towards which its fixed outer ring holds "
+        "the shaft, or both, of an opposed pair with `{offset}`",
     )
     damping: Damping = Field(
         default=0.0, description="radial, between the rings; usual: 0.25e-5 to 2.5e-5 s times the stiffness"

@@ -59,7 +59,8 @@ class BallBearing:
     radii of the grooves over the diameter of a ball; ball, ring: their materials; rows: 1 or 2; preload: along the axis
     on each row, N, or None where the rings are held at `offset`, the axial displacement in m from their first contact;
     turning: whether the balls pass, or act as if they were spread evenly; thrust: on all rows in addition to the
-    preload, in N, and over the square of the speed of the shaft, in N s^2; f_1, f_0: of Palmgren's friction, see
+    preload, in N, and over the square of the speed of the shaft, in N s^2; pair: whether two rows, moved against each
+    other by the offset, share the thrust, which presses the first one; f_1, f_0: of Palmgren's friction, see
     ball_friction; viscosity: kinematic, of the lubricant, m^2/s.
     """
 
@@ -76,6 +77,7 @@ class BallBearing:
     offset: float = 0.0
     turning: bool = True
     thrust: tuple[float, float] = (0.0, 0.0)
+    pair: bool = False
     f_1: float = 0.0
     f_0: float = 0.0
     viscosity: float = 0.0
@@ -179,7 +181,7 @@ class BallBearing:
         lubricant = self.rows * self.f_0 * self.pitch_diameter**3
         return BallNumbers(
             points=self.points,
-            share=self.rows * self.balls / self.points,
+            share=(1 if self.pair else self.rows) * self.balls / self.points,
             axial=self.grooves * math.sin(self.contact_angle),
             radial=self.grooves * math.cos(self.contact_angle),
             inner=(self.inner - 0.5) * self.ball_diameter,
@@ -187,7 +189,7 @@ class BallBearing:
             k_inner=inner.stiffness,
             k_outer=outer.stiffness,
             centrifugal=self.centrifugal,
-            held=float(self.preload is None),
+            held=float(self.preload is None and not self.pair),
             preload=self.offset if self.preload is None else self.rows * self.preload + self.thrust[0],
             cage=self.cage_ratio if self.turning else 0.0,
             thrust=self.thrust[1],
@@ -197,12 +199,21 @@ class BallBearing:
             load_friction=self.f_1 * self.pitch_diameter,
             viscous_friction=0.1 * lubricant * (PER_TURN * self.viscosity) ** (2.0 / 3.0),
             least_friction=16.0 * lubricant,
+            pair=float(self.pair),
+            load=self.thrust[0] if self.pair else 0.0,
         )
 
     @property
     def memory(self) -> Array:
         """(m,) for the kernels: nothing is known yet."""
-        return np.zeros(RINGS + KNOWN * self.points)
+        return np.zeros(RINGS + KNOWN * self.points * (2 if self.pair else 1))
+
+    def apart(self, omega: float) -> tuple[BallBearing, BallBearing]:
+        """The rows of a pair at omega rad/s with its rings in the middle, each held where the load has moved it."""
+        memory = self.memory
+        ball_bearing_force(self.numbers, 0.0, 0.0, omega, 0.0, memory)
+        one, moved = replace(self, rows=1, thrust=(0.0, 0.0), pair=False), float(memory[0])
+        return replace(one, offset=self.offset + moved), replace(one, offset=self.offset - moved)
 
 
 ROUND = 1e-15  # m, below which a deflection is round-off of the places
@@ -210,8 +221,9 @@ ROUND = 1e-15  # m, below which a deflection is round-off of the places
 
 @dataclass(frozen=True)
 class Balls:
-    """The balls of one row at rest. angles: from the x-axis, rad; inner_angle, outer_angle: contact angles in rad, NaN
-    without contact; inner_load, outer_load: N. All but the angles (..., n)."""
+    """The balls of one row at rest, or of both rows of a pair, one row after the other. angles: from the x-axis, rad;
+    inner_angle, outer_angle: contact angles in rad, NaN without contact; inner_load, outer_load: N. All but the angles
+    (..., n)."""
 
     angles: Array
     inner_angle: Array
@@ -246,7 +258,8 @@ def at_displacement(bearing: BallBearing, place: Array, omega: float, cage: floa
 
 def balls_of(of: BallNumbers, memory: Array, cage: float) -> Balls:
     """The balls that the kernel has left in its memory (..., w)."""
-    known = memory[..., RINGS:].reshape(*memory.shape[:-1], of.points, KNOWN)
+    rows = 2 if of.pair else 1
+    known = memory[..., RINGS:].reshape(*memory.shape[:-1], rows * of.points, KNOWN)
     a, r, u, v = np.moveaxis(known[..., :4], -1, 0)
     inner, outer = np.hypot(a - u, r - v) - of.inner, np.hypot(u, v) - of.outer
     inner_load, outer_load = (
@@ -255,7 +268,7 @@ def balls_of(of: BallNumbers, memory: Array, cage: float) -> Balls:
     inner_angle = np.where(inner_load > 0.0, np.arctan2(a - u, r - v), np.nan)
     outer_angle = np.where(outer_load > 0.0, np.arctan2(u, v), np.nan)
     around = BELOW + cage + 2.0 * math.pi * np.arange(of.points) / of.points
-    return Balls(around, inner_angle, outer_angle, inner_load, outer_load)
+    return Balls(np.tile(around, rows), inner_angle, outer_angle, inner_load, outer_load)
 
 
 TILTED = np.arange(2, 4)  # among the COORDINATES
@@ -379,7 +392,7 @@ class BallBearingElement(MachineElement):
             contact_angle=angle, inner=given.inner_curvature, outer=given.outer_curvature,
             ball=_material(given.ball_material), ring=_material(given.ring_material),
             rows=1 if given.arrangement == "single" else 2, preload=force, offset=offset,
-            turning=given.cage == "turning", thrust=self.thrust,
+            turning=given.cage == "turning", thrust=self.thrust, pair=given.locating == "both",
             f_1=friction.f1, f_0=friction.f0, viscosity=friction.viscosity or 0.0,
         )  # fmt: skip
 
@@ -388,12 +401,17 @@ class BallBearingElement(MachineElement):
         """Rows that act together, by the ends of the names of their signals: all, or the left and the right one, of
         which one alone carries the axial load."""
         rings = self.rings
-        if self.given.arrangement not in OPPOSED or not any(self.thrust):
+        if self.given.arrangement not in OPPOSED or rings.pair or not any(self.thrust):
             return (("", rings),)
         loaded, other = replace(rings, rows=1), replace(rings, rows=1, thrust=(0.0, 0.0))
         # back to back, the left row is pressed as the shaft moves to the right
         left = (self.given.arrangement == "back-to-back") == (self.given.locating == "right")
         return (("left", loaded if left else other), ("right", other if left else loaded))
+
+    @property
+    def uneven(self) -> bool:
+        """Whether an axial load presses one row of a pair more than the other."""
+        return len(self.rows) > 1 or self.rings.pair
 
     def link(self, site: Site, sees: tuple[str, ...] = PLANE) -> Link:
         """Where its force acts."""
@@ -412,11 +430,13 @@ class BallBearingElement(MachineElement):
             return None
         one = replace(self.rings, rows=1, turning=False)
         both = [replace(row, rows=1, turning=False) for _, row in self.rows] if len(self.rows) > 1 else [one, one]
-        sense = 1.0 if self.given.arrangement == "back-to-back" else -1.0
+        sense = 1.0 if self.given.arrangement == "back-to-back" else -1.0  # of the left row, which then is the first
         speeds = np.linspace(0.0, self.top, SPEEDS if self.top else 1)
         stiffness, damping = np.zeros((len(speeds), 4, 4)), np.zeros((len(speeds), 4, 4))
         damping[:, TILTED, TILTED] = 0.25 * self.given.damping * distance**2
         for matrix, omega in zip(stiffness, speeds, strict=True):
+            if one.pair:
+                both = list(one.apart(float(omega))[:: int(sense)])
             left = row_in_tilt(both[0], -0.5 * distance, sense, float(omega))
             right = row_in_tilt(both[1], 0.5 * distance, -sense, float(omega))
             force, moment = np.add(left, right)
@@ -449,7 +469,7 @@ class BallBearingElement(MachineElement):
         rows = 1 if self.given.arrangement in OPPOSED else self.rings.rows
         left = rows * (self.rings.preload or 0.0) + constant
         least = min(left, left + square * self.top**2)
-        if self.given.locating is None or least > 0.0:
+        if self.given.locating is None or self.rings.pair or least > 0.0:
             return []
         other = "left" if self.given.locating == "right" else "right"
         parted = f"pulls the rings of the bearing {self.given.name} apart"
@@ -466,7 +486,8 @@ class BallBearingElement(MachineElement):
         angle = f"{math.degrees(rings.contact_angle):.3g} deg without load"
         preload = f"preload {display(rings.preload, 'N')} by a spring" if rings.preload else "rings held along the axis"
         if given.locating is not None:
-            preload += f", and the axial load to the {given.locating}"
+            towards = "both directions" if rings.pair else f"the {given.locating}"
+            preload += f", and the axial load to {towards}"
         friction = "" if BallForce(rings).brakes else ", friction"
         reason = f"Hertz contacts, centrifugal force of the balls, {angle}, {preload}"
         tilt = "" if self.tilt is not None else ", moments of the rings"
@@ -474,10 +495,10 @@ class BallBearingElement(MachineElement):
 
 
 def _thrust(case: Case, bearing: BallBearingKeys) -> tuple[float, float]:
-    """See BallBearingElement: of a load towards the side to which the bearing holds the shaft."""
+    """See BallBearingElement: of a load towards the side to which the bearing holds the shaft, of both to the right."""
     if case.axial is None or bearing.locating is None:
         return 0.0, 0.0
-    load, sign = case.axial.load, 1.0 if bearing.locating == "right" else -1.0
+    load, sign = case.axial.load, -1.0 if bearing.locating == "left" else 1.0
     if isinstance(load, LoadAtSpeed):
         return 0.0, sign * load.load / (2.0 * math.pi * load.at) ** 2
     return sign * largest(load), 0.0

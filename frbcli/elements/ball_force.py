@@ -133,14 +133,16 @@ class BallNumbers(NamedTuple):
     load_friction: float
     viscous_friction: float
     least_friction: float
+    pair: float
+    load: float
 
 
 def ball_numbers(numbers: Array) -> BallNumbers:
-    """The bearing whose numbers (19,) are in an array."""
+    """The bearing whose numbers (21,) are in an array."""
     return BallNumbers(
         int(numbers[0]), numbers[1], numbers[2], numbers[3], numbers[4], numbers[5], numbers[6], numbers[7], numbers[8],
         numbers[9], numbers[10], numbers[11], numbers[12], numbers[13], numbers[14], numbers[15],
-        numbers[16], numbers[17], numbers[18],
+        numbers[16], numbers[17], numbers[18], numbers[19], numbers[20],
     )  # fmt: skip
 
 
@@ -261,27 +263,32 @@ def _near(of: BallNumbers, a: float, r: float, length: float, centrifugal: float
     return (along * a - aside * r) / length, (along * r + aside * a) / length
 
 
-def rings(
-    of: BallNumbers, d_x: float, d_y: float, d_z: float, omega: float, cage: float, memory: Array
-) -> tuple[float, float, float, float, float, float, float, float, float]:
+Sums = tuple[float, float, float, float, float, float, float, float, float]
+
+
+def rings(of: BallNumbers, d_x: float, d_y: float, d_z: float, omega: float, cage: float, memory: Array) -> Sums:
     """All balls: the force (x, y, z) in N that holds the inner ring at a displacement in m, and its
     derivative (xx, xy, yy, xz, yz, zz) in N/m.
 
     omega: of the shaft, rad/s; cage: its angle, rad. memory: see ball_bearing_force.
     """
     centrifugal, rest = of_balls(of, omega)
-    return _around(of, d_x, d_y, d_z, math.cos(BELOW + cage), math.sin(BELOW + cage), centrifugal, rest, memory)
+    c, s = math.cos(BELOW + cage), math.sin(BELOW + cage)
+    if of.pair > 0.0:
+        return _pair(of, d_x, d_y, d_z, c, s, centrifugal, rest, memory)[0]
+    return _around(of, d_x, d_y, d_z, c, s, centrifugal, rest, memory, RINGS)
 
 
 def _around(
     of: BallNumbers, d_x: float, d_y: float, d_z: float, c: float, s: float, centrifugal: float, rest: float,
-    memory: Array,
-) -> tuple[float, float, float, float, float, float, float, float, float]:  # fmt: skip
-    """See rings; c, s: cosine and sine of the angle of the first ball; centrifugal, rest: see of_balls."""
+    memory: Array, first: int,
+) -> Sums:  # fmt: skip
+    """See rings; c, s: cosine and sine of the angle of the first ball, at the place `first` of the memory; centrifugal,
+    rest: see of_balls."""
     a, turn_c, turn_s = of.axial + d_z, of.turn_cos, of.turn_sin
     f_x = f_y = f_z = k_xx = k_xy = k_yy = k_xz = k_yz = k_zz = 0.0
     for j in range(of.points):
-        r, at = of.radial + d_x * c + d_y * s, RINGS + KNOWN * j
+        r, at = of.radial + d_x * c + d_y * s, first + KNOWN * j
         q_a, q_r, aa, ar, rr = ball(of, a, r, centrifugal, rest, memory, at)
         f_x, f_y, f_z = f_x + q_r * c, f_y + q_r * s, f_z + q_a
         k_xx, k_xy, k_yy = k_xx + rr * c * c, k_xy + rr * c * s, k_yy + rr * s * s
@@ -291,15 +298,28 @@ def _around(
     return n * f_x, n * f_y, n * f_z, n * k_xx, n * k_xy, n * k_yy, n * k_xz, n * k_yz, n * k_zz
 
 
+def _pair(
+    of: BallNumbers, d_x: float, d_y: float, d_z: float, c: float, s: float, centrifugal: float, rest: float,
+    memory: Array,
+) -> tuple[Sums, float]:  # fmt: skip
+    """See _around, of both rows of a pair, whose second one moves away by d_z; and the sum of their axial forces."""
+    second = RINGS + KNOWN * of.points
+    a = _around(of, d_x, d_y, of.preload + d_z, c, s, centrifugal, rest, memory, RINGS)
+    b = _around(of, d_x, d_y, of.preload - d_z, c, s, centrifugal, rest, memory, second)
+    forces = a[0] + b[0], a[1] + b[1], a[2] - b[2]
+    slopes = a[3] + b[3], a[4] + b[4], a[5] + b[5], a[6] - b[6], a[7] - b[7], a[8] + b[8]
+    return forces + slopes, a[2] + b[2]
+
+
 def ball_bearing_force(
     of: BallNumbers, d_x: float, d_y: float, omega: float, cage: float, memory: Array
 ) -> tuple[float, float, float, float, float, float]:
     """Force (x, y) in N on the inner ring at its displacement in m, and -dF/dd (xx, xy, yx, yy) in N/m,
-    both with the axial displacement at which the preload is balanced.
+    both with the axial displacement at which the preload is balanced, or the axial load of a pair.
 
     omega: of the shaft, rad/s; cage: its angle in rad, by which the first ball stands off the -y axis. memory:
-    (RINGS + KNOWN points,) what the last call left, zeros at first: the displacement of the ring, and what is known of
-    each ball. The result does not depend on it.
+    (RINGS + KNOWN points,), of a pair with the points of both rows: what the last call left, zeros at first: the
+    displacement of the ring, and what is known of each ball. The result does not depend on it.
 
     The axial force rises with the axial displacement: Newton's method, or half of the interval that holds the answer
     where its step leaves it or the imbalance has not been halved.
@@ -309,15 +329,19 @@ def ball_bearing_force(
         return -f_x, -f_y, xx, xy, xy, yy
     d_z = memory[0] + memory[3] * (d_x - memory[1]) + memory[4] * (d_y - memory[2])
     low, high, last, reach = -math.inf, math.inf, math.inf, REACH
-    preload = of.preload + of.thrust * omega * omega
-    (centrifugal, rest), c, s = of_balls(of, omega), math.cos(BELOW + cage), math.sin(BELOW + cage)
+    carried = (of.load if of.pair > 0.0 else of.preload) + of.thrust * omega * omega
+    (centrifugal, rest), c, s, size = of_balls(of, omega), math.cos(BELOW + cage), math.sin(BELOW + cage), abs(carried)
     for _ in range(STEPS):
-        f_x, f_y, f_z, xx, xy, yy, xz, yz, zz = _around(of, d_x, d_y, d_z, c, s, centrifugal, rest, memory)
-        missed = f_z - preload
+        if of.pair > 0.0:
+            sums, size = _pair(of, d_x, d_y, d_z, c, s, centrifugal, rest, memory)
+        else:
+            sums = _around(of, d_x, d_y, d_z, c, s, centrifugal, rest, memory, RINGS)
+        f_x, f_y, f_z, xx, xy, yy, xz, yz, zz = sums
+        missed = f_z - carried
         step = reach if missed < 0.0 else -reach
         if zz > 0.0 and abs(missed) < zz * reach:
             step = -missed / zz
-        if abs(missed) <= NEAR_ALONG * preload:
+        if abs(missed) <= NEAR_ALONG * size:
             break
         if missed < 0.0:
             low = d_z
@@ -340,7 +364,7 @@ def ball_friction(of: BallNumbers, omega: float, memory: Array) -> tuple[float, 
     speed turns forwards: as a constant load, they brake it until it stands.
     """
     loads, viscous, speed = 0.0, of.least_friction, abs(omega)
-    for j in range(of.points):
+    for j in range(2 * of.points if of.pair > 0.0 else of.points):
         at = RINGS + KNOWN * j
         along, out = memory[at] - memory[at + 2], memory[at + 1] - memory[at + 3]
         depth = max(math.sqrt(along * along + out * out) - of.inner, 0.0)

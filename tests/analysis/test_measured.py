@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
-from synthetic_run import CLEARANCE, Rotor, parser_error, signals
+from synthetic_run import CLEARANCE, Rotor, signals
 
 from frbcli.analysis.measured import Measurement, measured_run
 from frbcli.analysis.order_tracking import MARK, order_track
@@ -95,7 +95,7 @@ def test_a_run_and_its_own_table_have_the_same_events_at_the_same_point(
 ) -> None:
     """README says so of `frb waterfall`; the critical speed of the journal is not that of the disk."""
     run, path = exported
-    close = 1e-5 if parser_error() else 1e-6  # Hz: the top of a flat peak follows the root of what reading rounds
+    close = 1e-5  # Hz: the top of a flat peak follows the root of round-off, sqrt(1e-15) of 180 Hz
     words = ["--measured", str(path), *columns_of(point), "--signal", point, "-o", str(tmp_path / "a.png"), "--json"]
     assert frb(["compare", str(run.path), *words]) == 0
     document = json.loads(capsys.readouterr().out)

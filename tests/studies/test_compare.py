@@ -37,6 +37,7 @@ def compared() -> Comparison:
     return compare(quick_case(), theories=["finite", "short"])
 
 
+@pytest.mark.bitwise
 def test_each_variant_is_the_run_of_its_models(compared: Comparison, tmp_path: Path) -> None:
     assert [result.variant for result in compared.results] == [Variant("finite", HALF), Variant("short", HALF)]
     alone = runup(quick_case("film.theory=short"), tmp_path / "short.h5")

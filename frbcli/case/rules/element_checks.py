@@ -148,12 +148,20 @@ def _preload(path: Path, bearing: Mapping[str, Any], angle: bool) -> Iterator[Br
 
 
 def _locating(path: Path, bearing: Mapping[str, Any], data: Mapping[str, Any]) -> Iterator[Breach]:
-    """A bearing that carries the axial load does so in one direction, in addition to its spring's preload."""
+    """A bearing that carries the axial load does so in one direction, in addition to its spring's preload, or as a pair
+    of held rows in both."""
     if "locating" not in bearing:
         return
     if "axial" not in data:
         yield Breach(path, "has no effect without an axial load.", 'Remove it, or add [axial] with e.g. load = "40 N".')
-    if not number(bearing, "preload", "N"):
+    held, opposed = isinstance(bearing.get("preload"), dict), bearing.get("arrangement", "single") in OPPOSED
+    if held and opposed and bearing["locating"] != "both":
+        problem = "is of rows that an offset holds together: they carry an axial load in both directions."
+        yield Breach(path, problem, 'Write locating = "both".')
+    elif bearing["locating"] == "both" and not (held and opposed):
+        problem = "needs two rows, face to face or back to back, that an offset holds together."
+        yield Breach(path, problem, 'Write e.g. arrangement = "back-to-back", preload = { offset = "5 um" }.')
+    elif not (held and opposed) and not number(bearing, "preload", "N"):
         problem = "needs a preload by a spring, to which the axial load is added."
         yield Breach(path, problem, 'Write e.g. preload = "50 N", or remove it.')
     if "rotor" in data and table(data, "rotor").get("kind") not in OF_SECTIONS:

@@ -129,7 +129,7 @@ def ball_bearing_sheet(
         problem = "is missing: the case has no ball bearing."
         raise InputError(case.name or "case", (Fault("bearing", "", None, problem, 'Add one of kind = "ball".'),))
     for element in elements:
-        if len(element.rows) > 1:
+        if element.uneven:
             problem = "loads one row of an opposed pair: its sheet would be of two different rows."
             remedy = "Remove it for the sheet, and give each row's preload instead."
             raise InputError(case.name or "case", (Fault(f"{element.key}.locating", "", None, problem, remedy),))

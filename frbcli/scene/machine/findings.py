@@ -23,7 +23,7 @@ from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
 from frbcli.case.film import ColdClearance, FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, spaced, speed_shown
-from frbcli.elements.ball import RATING_PRESSURE, BallBearingElement
+from frbcli.elements.ball import RATING_PRESSURE, BallBearingElement, at_displacement
 from frbcli.elements.supports import DamperElement
 from frbcli.errors import NotConverged
 from frbcli.film.gap import (
@@ -304,7 +304,7 @@ def _film(case: Case, name: str, film: FilmGeometry, load: float, omega: float) 
 
 def remarks(case: Case) -> tuple[str, ...]:
     """What a case has that contradicts itself or is probably not meant, a sentence each."""
-    sentences = list(_dented_balls(case))
+    sentences = [*_dented_balls(case), *_loose_rows(case)]
     if case.given_rotor is None:
         return tuple(sentences)
     shaft = shaft_of(case)
@@ -323,6 +323,18 @@ def _dented_balls(case: Case) -> Iterator[str]:
                 f"The preload alone makes a Hertz pressure of {shown} in {element.key}: "
                 f"balls leave dents above {display(RATING_PRESSURE, 'Pa')} (ISO 76)."
             )
+
+
+def _loose_rows(case: Case) -> Iterator[str]:
+    """Pairs of rows of which an axial load unloads one."""
+    for element in BallBearingElement.of(case):
+        if not element.rings.pair:
+            continue
+        for omega in (0.0, element.top):
+            rows = (at_displacement(row, np.zeros(2), omega) for row in element.rings.apart(omega))
+            if any(row.balls.inner_load.max() <= 0.0 for row in rows):
+                yield f"The axial load takes the whole preload off one row of {element.key}: its balls may slide."
+                break
 
 
 def _journals_off_the_shaft(case: Case) -> Iterator[str]:

@@ -16,8 +16,8 @@ from scipy.optimize import brentq
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict
-from frbcli.elements.ball import BallBearing, BallBearingElement, BallForce, at_displacement, row_in_tilt
-from frbcli.elements.ball_force import RINGS, ball, of_balls
+from frbcli.elements.ball import BallBearing, BallBearingElement, BallForce, at_displacement, balls_of, row_in_tilt
+from frbcli.elements.ball_force import RINGS, ball, ball_friction, of_balls
 from frbcli.errors import InputError
 from frbcli.linear.sheets.ball import ball_bearing_sheet
 from frbcli.linear.stability import stability
@@ -288,3 +288,92 @@ def test_one_row_of_an_opposed_pair_carries_the_axial_load(arrangement: str, loc
     k, force, moment = sum(both), coupled.stiffness[0, 0, 3], coupled.stiffness[0, 3, 3]
     plane = np.linalg.eigvals(np.array([[k / MASS, force / MASS], [force / inertia, moment / inertia]]))
     np.testing.assert_allclose(whirls(case)[:4], np.sort(np.repeat(np.sqrt(plane.real), 2)), rtol=5e-3)
+
+
+OFFSET = {"offset": "5 um"}
+
+
+def held_pair(thrust: float, square: float = 0.0, turning: bool = False) -> BallBearing:
+    """Two rows that an offset of 5 um holds against each other, under an axial load."""
+    (element,) = BallBearingElement.of(on_a_pair("back-to-back", preload=OFFSET))
+    return replace(element.rings, pair=True, thrust=(thrust, square), turning=turning)
+
+
+def test_a_held_pair_shares_the_axial_load_as_its_closed_form() -> None:
+    """Without speed a row bears Z K (A (cos(alpha_0) / cos(alpha) - 1))^1.5 sin(alpha): the difference is the load."""
+    rings = held_pair(120.0)
+    inner, outer = (each.stiffness ** (-2.0 / 3.0) for each in rings.contacts)
+    radial, axial = (rings.grooves * each(rings.contact_angle) for each in (math.cos, math.sin))
+
+    def force(moved: float) -> float:
+        length = math.hypot(radial, axial + moved)
+        pressed = max(length - rings.grooves, 0.0) / (inner + outer)
+        return float(rings.balls * pressed**1.5 * (axial + moved) / length)
+
+    z = brentq(lambda z: force(5e-6 + z) - force(5e-6 - z) - 120.0, 0.0, 2e-5, xtol=1e-16)
+    found = at_displacement(rings, np.zeros(2), 0.0)
+    assert found.displacement[2] == pytest.approx(z, rel=1e-8)
+    assert found.force[2] == pytest.approx(-120.0, rel=1e-9)
+    rows = rings.apart(0.0)
+    assert [row.offset for row in rows] == pytest.approx([5e-6 + z, 5e-6 - z], rel=1e-8)
+
+
+@pytest.mark.parametrize("omega", [0.0, TURN * 2500.0])
+def test_a_held_pair_is_two_held_rows_moved_by_the_load(omega: float) -> None:
+    """Without a load it is the pair of before; under one its force is that of both rows, and its stiffness the slope of
+    the force, the rings free along the axis."""
+    place, rings = np.array([1.2e-6, -0.7e-6]), held_pair(60.0, 1e-7)
+    plain = at_displacement(replace(rings, pair=False, thrust=(0.0, 0.0)), place, omega)
+    unloaded = at_displacement(replace(rings, thrust=(0.0, 0.0)), place, omega)
+    np.testing.assert_allclose(unloaded.force[:2], plain.force[:2], rtol=1e-12)
+    found = at_displacement(rings, place, omega)
+    assert found.force[2] == pytest.approx(-60.0 - 1e-7 * omega**2, rel=1e-9)
+    one, z = replace(rings, rows=1, pair=False, thrust=(0.0, 0.0)), found.displacement[2]
+    both = [at_displacement(replace(one, offset=5e-6 + each), place, omega).force for each in (z, -z)]
+    np.testing.assert_allclose(found.force[:2], (both[0] + both[1])[:2], rtol=1e-9)
+    step = 1e-9 * np.eye(2)
+    moved = ([place + sign * each for each in step] for sign in (1.0, -1.0))
+    ahead, behind = ([at_displacement(rings, each, omega).force[:2] for each in places] for places in moved)
+    slope = -(np.array(ahead) - np.array(behind)).T / 2e-9
+    np.testing.assert_allclose(found.stiffness, slope, rtol=1e-5, atol=1e-6 * np.abs(slope).max())
+
+
+def test_a_held_pair_in_a_run_is_that_at_rest_and_its_friction_counts_both_rows() -> None:
+    """Compiled and plain; the balls of both rows bear the loads of two rows by themselves."""
+    rings = replace(held_pair(60.0, turning=True), f_1=1e-3)
+    place, omega = np.array([1.2e-6, -0.7e-6]), TURN * 1000.0
+    rest = at_displacement(rings, place, omega)
+    motion = np.array([[*place, 0.0, 0.0, omega, 0.0]])
+    answers, memories = evaluate_along(BallForce(rings), motion)
+    np.testing.assert_allclose(answers[0, :2], rest.force[:2], rtol=1e-9)
+    loads = balls_of(rings.numbers, memories[0], 0.0).inner_load
+    np.testing.assert_allclose(loads, rest.balls.inner_load, rtol=1e-6, atol=1e-9)
+    torque, _ = ball_friction(rings.numbers, omega, memories[0])
+    assert torque == pytest.approx(-1e-3 * rings.pitch_diameter * loads.sum(), rel=1e-6)
+
+
+@pytest.mark.parametrize("arrangement", ["back-to-back", "face-to-face"])
+@pytest.mark.parametrize("push", [40.0, -40.0])
+def test_a_held_pair_in_a_machine(arrangement: str, push: float) -> None:
+    """The row that the load presses is stiffer: it couples tilt and displacement, with the sign of the load."""
+    case = on_a_pair(arrangement, preload=OFFSET, locating="both", axial={"load": f"{push} N"})
+    (element,) = BallBearingElement.of(case)
+    assert element.signals == ("ball_force_pair",)
+    assert element.tilt is not None
+    stiffness = element.tilt.stiffness[0]
+    left = (arrangement == "back-to-back") == (push > 0.0)  # the row that is pressed
+    assert (stiffness[0, 3] < 0.0) == left
+    rest = at_displacement(replace(element.rings, turning=False), np.zeros(2), 0.0)
+    inertia = MASS * (3.0 * RADIUS**2 + LENGTH**2) / 12.0
+    k, force, moment = rest.stiffness[0, 0], stiffness[0, 3], stiffness[3, 3]
+    plane = np.linalg.eigvals(np.array([[k / MASS, force / MASS], [force / inertia, moment / inertia]]))
+    np.testing.assert_allclose(whirls(case)[:4], np.sort(np.repeat(np.sqrt(plane.real), 2)), rtol=5e-3)
+
+
+def test_an_axial_load_that_takes_the_preload_off_a_row_is_remarked() -> None:
+    def said(load: str) -> list[str]:
+        case = on_a_pair("back-to-back", preload=OFFSET, locating="both", axial={"load": load})
+        return [sentence for sentence in remarks(case) if "off one row" in sentence]
+
+    assert not said("40 N")
+    assert len(said("4 kN")) == 1
