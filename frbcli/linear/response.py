@@ -252,7 +252,8 @@ def response(
     def solved(speeds: Sequence[float]) -> list[StabilityPoint]:
         return [each for each in stability_points(case, speeds, None, frequency, machines)[1] if each.rests]
 
-    critical, known = critical_speeds_of(resting, excitation, operating_Hz, solved)
+    sought = solved if speeds_Hz is None or resting[0].films else None
+    critical, known = critical_speeds_of(resting, excitation, operating_Hz, sought)
     if speeds_Hz is None:
         resting = known
     return _response(case, system, resting, critical, excitation)
@@ -348,18 +349,18 @@ def critical_speeds_of(
     points: Sequence[StabilityPoint],
     excitation: str,
     operating_Hz: tuple[float, float] | None,
-    solved: Callable[[Sequence[float]], list[StabilityPoint]],
+    solved: Callable[[Sequence[float]], list[StabilityPoint]] | None,
 ) -> tuple[tuple[CriticalSpeed, ...], list[StabilityPoint]]:
     """The peaks of the response between points at ascending speeds, and the points including additional solved ones.
 
     solved: the points that rest at speeds in Hz. Films are solved at their peaks until these stay where they are;
-    without films the points of a curve around each peak are."""
+    without films the points of a curve around each peak are; None where no curve is asked for."""
     known, rounds = list(points), ROUNDS if points[0].films else 0
     model = _model(known, excitation)
     maxima = peaks(model)
     for _ in range(rounds):
         far = [peak.omega for peak in maxima if np.min(np.abs(model.omegas - peak.omega)) > CLOSE * peak.omega]
-        more = solved([omega / TURN for omega in far]) if far else []
+        more = solved([omega / TURN for omega in far]) if far and solved is not None else []
         if not more:
             break
         known = sorted([*known, *more], key=attrgetter("speed_Hz"))
@@ -367,7 +368,7 @@ def critical_speeds_of(
         maxima = peaks(model)
     others = [(_model(known, excitation, number), share) for number, share in _shares(known)]
     critical = tuple(_critical(model, others, peak, known[0], operating_Hz) for peak in maxima)
-    if not points[0].films:
+    if not points[0].films and solved is not None:
         bounded = [peak for peak in maxima if math.isfinite(peak.amplitude)]
         curve = np.unique([peak.omega + abs(peak.pole.imag) * WIDTHS for peak in bounded])
         inside = curve[(curve > model.omegas[0]) & (curve < model.omegas[-1])] / TURN

@@ -5,7 +5,9 @@ from __future__ import annotations
 import csv
 import json
 import math
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,14 +15,34 @@ from marches import in_two_bearings
 
 from frbcli.analysis.order_tracking import order_track
 from frbcli.case.reading.load import load_case
+from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.cycles.limit_cycles import limit_cycles
+from frbcli.linear import response as of_response
 from frbcli.linear.response import DOUBTFUL, Response, forced_motion, larger_semi_axis, response
+from frbcli.linear.stability import stability_points
 from frbcli.plot.machine.response import response_figure
 from frbcli.rotor.assembly import jeffcott_rotor
 from frbcli.runs.run import runup
 
 MASS, JOURNALS, SHAFT, UNBALANCE, OUTER, INNER = 6.0, 0.1, 5e6, 3e-6, 4.0, 0.7
+
+
+def test_speeds_that_are_given_are_solved_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without films nobody asks for a curve around the peaks, which took minutes of a shaft with hundreds of modes."""
+    solved: list[int] = []
+
+    def counted(case: Case, speeds: Sequence[float], *more: Any) -> Any:
+        solved.append(len(speeds))
+        return stability_points(case, speeds, *more)
+
+    monkeypatch.setattr(of_response, "stability_points", counted)
+    case = load_case("seal")
+    few = response(case, [20.0, 50.0])
+    assert (solved, len(few.speeds_Hz)) == ([2], 2)
+    whole = response(case)
+    assert len(solved) == 3
+    assert len(whole.speeds_Hz) == sum(solved[1:])
 
 
 @pytest.mark.parametrize("omega", [50.0, 700.0, 912.0, 3000.0])
