@@ -91,7 +91,7 @@ def test_a_machine_whose_openings_turn_is_as_warm_at_rest_as_with_its_openings_i
     warm = course._heat.warm(rest[None].astype(complex), 0.0, omega)
     steady = WarmMachines(case, plan, make_system(case, plan)).at(omega).steady
     assert warm.temperatures == pytest.approx(steady.temperatures, abs=0.2)
-    assert steady.temperatures[0] > course._heat.model.supply[0] + 5.0
+    assert steady.temperatures[0] > course._heat.heat.model.supply[0] + 5.0
 
 
 @pytest.mark.parametrize(
