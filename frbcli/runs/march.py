@@ -101,6 +101,16 @@ class Progress:
     over_plan: float = 0.0
 
 
+# After so much of a run, or of its clock in s, its pace is known: the first steps from rest take longest.
+KNOWN_SHARE, KNOWN_s = 0.01, 1.0
+
+
+def time_left(t: float, end: float, wall_s: float) -> float:
+    """Time in s that a run takes from t in s on, by its pace so far; infinite before that is known."""
+    known = t > 0.0 and (t >= KNOWN_SHARE * end or wall_s >= KNOWN_s)
+    return wall_s * (end - t) / t if known else math.inf
+
+
 class March:
     """A run: the constant parts, the state, the clock.
 
@@ -389,7 +399,7 @@ class March:
         numbers = self._state.numbers
         t, end = self.time, self._profile.end if until is None else until
         here = self._now.eccentricities(self._state.q)
-        rate = t / max(self._wall_s, 1e-9)
+        rate, left = t / max(self._wall_s, 1e-9), time_left(t, end, self._wall_s)
         return Progress(
             t_s=t,
             end_s=end,
@@ -398,7 +408,7 @@ class March:
             steps=int(numbers[STEPS]),
             steps_per_revolution=float(numbers[STEPS] / numbers[TURNS]) if numbers[TURNS] > 0 else math.inf,
             simulated_ms_per_hour=1e3 * 3600.0 * rate,
-            left_s=(end - t) / rate if rate > 0 else math.inf,
+            left_s=left,
             for_error=until is not None,
             cpu_s=self._cpu_s,
             over_plan=self._cpu_s / max(self._expected.cpu_s * self._course.share(t), 1e-9),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import signal
 import threading
 import time
@@ -299,6 +300,15 @@ def test_progress_counts_up_to_the_end(tmp_path: Path) -> None:
     assert seen[-1].speed_Hz == pytest.approx(120.0)
     assert seen[-1].eccentricity == pytest.approx(run["eccentricity"][-1])
     assert seen[-1].steps == run.cost["steps"]
+
+
+def test_the_time_left_is_not_known_from_the_first_steps() -> None:
+    """A run of 1 s began with "58:36 left": its first steps, from rest, are the shortest."""
+    assert march.time_left(0.0, 10.0, 0.5) == math.inf
+    assert march.time_left(3e-5, 10.0, 0.01) == math.inf
+    assert march.time_left(0.2, 10.0, 0.01) == pytest.approx(0.49)
+    assert march.time_left(1e-3, 10.0, 2.0) == pytest.approx(2e4 - 2.0)
+    assert march.time_left(10.0, 10.0, 3.0) == 0.0
 
 
 # --- where it cannot be written ---
