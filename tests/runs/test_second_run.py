@@ -51,6 +51,7 @@ def test_a_run_at_a_tenth_of_the_target_is_within_the_uncertainties(run: Run, ca
             assert abs(event[key] - true[key]) <= uncertainty < 0.03 * max(event[key], 1.0)
 
 
+@pytest.mark.bitwise
 def test_a_run_that_has_ended_gets_them_later(run: Run, case: Case, tmp_path: Path) -> None:
     path = tmp_path / "later.h5"
     first = runup(case, path)
