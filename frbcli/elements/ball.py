@@ -146,27 +146,10 @@ class BallBearing:
 
     @property
     def preload_pressure(self) -> float:
-        """Largest Hertz pressure in Pa under the preload alone: F_a = Z K delta^1.5 sin(alpha)."""
-        from scipy.optimize import brentq
-
-        inner, outer = self.contacts
-        stiffness = (inner.stiffness ** (-2.0 / 3.0) + outer.stiffness ** (-2.0 / 3.0)) ** -1.5
-        radial, axial = self.grooves * math.cos(self.contact_angle), self.grooves * math.sin(self.contact_angle)
-
-        def load(moved: float) -> float:
-            """N on each ball."""
-            return float(stiffness * max(math.hypot(radial, axial + moved) - self.grooves, 0.0) ** 1.5)
-
-        def missing(moved: float) -> float:
-            length = math.hypot(radial, axial + moved)
-            return (self.preload or 0.0) - self.balls * load(moved) * (axial + moved) / length
-
-        most = self.ball_diameter  # beyond every sound preload
-        if self.preload is None or missing(most) > 0.0:
-            moved = self.offset if self.preload is None else most
-        else:
-            moved = float(brentq(missing, 0.0, most, xtol=1e-15))
-        return max(inner.pressure(load(moved)), outer.pressure(load(moved)))
+        """Largest Hertz pressure in Pa under the preload alone."""
+        alone = replace(self, pair=False, thrust=(0.0, 0.0))
+        load = float(at_displacement(alone, np.zeros(2), 0.0).balls.inner_load.max())
+        return max(each.pressure(load) for each in self.contacts)
 
     @property
     def points(self) -> int:
@@ -199,14 +182,14 @@ class BallBearing:
             load_friction=self.f_1 * self.pitch_diameter,
             viscous_friction=0.1 * lubricant * (PER_TURN * self.viscosity) ** (2.0 / 3.0),
             least_friction=16.0 * lubricant,
-            pair=float(self.pair),
+            rows=2 if self.pair else 1,
             load=self.thrust[0] if self.pair else 0.0,
         )
 
     @property
     def memory(self) -> Array:
         """(m,) for the kernels: nothing is known yet."""
-        return np.zeros(RINGS + KNOWN * self.points * (2 if self.pair else 1))
+        return np.zeros(RINGS + KNOWN * self.numbers.rows * self.points)
 
     def apart(self, omega: float) -> tuple[BallBearing, BallBearing]:
         """The rows of a pair at omega rad/s with its rings in the middle, each held where the load has moved it."""
@@ -258,8 +241,7 @@ def at_displacement(bearing: BallBearing, place: Array, omega: float, cage: floa
 
 def balls_of(of: BallNumbers, memory: Array, cage: float) -> Balls:
     """The balls that the kernel has left in its memory (..., w)."""
-    rows = 2 if of.pair else 1
-    known = memory[..., RINGS:].reshape(*memory.shape[:-1], rows * of.points, KNOWN)
+    known = memory[..., RINGS:].reshape(*memory.shape[:-1], of.rows * of.points, KNOWN)
     a, r, u, v = np.moveaxis(known[..., :4], -1, 0)
     inner, outer = np.hypot(a - u, r - v) - of.inner, np.hypot(u, v) - of.outer
     inner_load, outer_load = (
@@ -268,7 +250,7 @@ def balls_of(of: BallNumbers, memory: Array, cage: float) -> Balls:
     inner_angle = np.where(inner_load > 0.0, np.arctan2(a - u, r - v), np.nan)
     outer_angle = np.where(outer_load > 0.0, np.arctan2(u, v), np.nan)
     around = BELOW + cage + 2.0 * math.pi * np.arange(of.points) / of.points
-    return Balls(np.tile(around, rows), inner_angle, outer_angle, inner_load, outer_load)
+    return Balls(np.tile(around, of.rows), inner_angle, outer_angle, inner_load, outer_load)
 
 
 TILTED = np.arange(2, 4)  # among the COORDINATES

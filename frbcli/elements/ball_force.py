@@ -133,7 +133,7 @@ class BallNumbers(NamedTuple):
     load_friction: float
     viscous_friction: float
     least_friction: float
-    pair: float
+    rows: int
     load: float
 
 
@@ -142,7 +142,7 @@ def ball_numbers(numbers: Array) -> BallNumbers:
     return BallNumbers(
         int(numbers[0]), numbers[1], numbers[2], numbers[3], numbers[4], numbers[5], numbers[6], numbers[7], numbers[8],
         numbers[9], numbers[10], numbers[11], numbers[12], numbers[13], numbers[14], numbers[15],
-        numbers[16], numbers[17], numbers[18], numbers[19], numbers[20],
+        numbers[16], numbers[17], numbers[18], int(numbers[19]), numbers[20],
     )  # fmt: skip
 
 
@@ -274,7 +274,7 @@ def rings(of: BallNumbers, d_x: float, d_y: float, d_z: float, omega: float, cag
     """
     centrifugal, rest = of_balls(of, omega)
     c, s = math.cos(BELOW + cage), math.sin(BELOW + cage)
-    if of.pair > 0.0:
+    if of.rows > 1:
         return _pair(of, d_x, d_y, d_z, c, s, centrifugal, rest, memory)[0]
     return _around(of, d_x, d_y, d_z, c, s, centrifugal, rest, memory, RINGS)
 
@@ -318,8 +318,8 @@ def ball_bearing_force(
     both with the axial displacement at which the preload is balanced, or the axial load of a pair.
 
     omega: of the shaft, rad/s; cage: its angle in rad, by which the first ball stands off the -y axis. memory:
-    (RINGS + KNOWN points,), of a pair with the points of both rows: what the last call left, zeros at first: the
-    displacement of the ring, and what is known of each ball. The result does not depend on it.
+    (RINGS + KNOWN rows points,) what the last call left, zeros at first: the displacement of the ring, and what is
+    known of each ball. The result does not depend on it.
 
     The axial force rises with the axial displacement: Newton's method, or half of the interval that holds the answer
     where its step leaves it or the imbalance has not been halved.
@@ -329,10 +329,10 @@ def ball_bearing_force(
         return -f_x, -f_y, xx, xy, xy, yy
     d_z = memory[0] + memory[3] * (d_x - memory[1]) + memory[4] * (d_y - memory[2])
     low, high, last, reach = -math.inf, math.inf, math.inf, REACH
-    carried = (of.load if of.pair > 0.0 else of.preload) + of.thrust * omega * omega
+    carried = (of.load if of.rows > 1 else of.preload) + of.thrust * omega * omega
     (centrifugal, rest), c, s, size = of_balls(of, omega), math.cos(BELOW + cage), math.sin(BELOW + cage), abs(carried)
     for _ in range(STEPS):
-        if of.pair > 0.0:
+        if of.rows > 1:
             sums, size = _pair(of, d_x, d_y, d_z, c, s, centrifugal, rest, memory)
         else:
             sums = _around(of, d_x, d_y, d_z, c, s, centrifugal, rest, memory, RINGS)
@@ -364,7 +364,7 @@ def ball_friction(of: BallNumbers, omega: float, memory: Array) -> tuple[float, 
     speed turns forwards: as a constant load, they brake it until it stands.
     """
     loads, viscous, speed = 0.0, of.least_friction, abs(omega)
-    for j in range(2 * of.points if of.pair > 0.0 else of.points):
+    for j in range(of.rows * of.points):
         at = RINGS + KNOWN * j
         along, out = memory[at] - memory[at + 2], memory[at + 1] - memory[at + 3]
         depth = max(math.sqrt(along * along + out * out) - of.inner, 0.0)

@@ -252,10 +252,9 @@ def response(
     def solved(speeds: Sequence[float]) -> list[StabilityPoint]:
         return [each for each in stability_points(case, speeds, None, frequency, machines)[1] if each.rests]
 
-    sought = solved if speeds_Hz is None or resting[0].films else None
-    critical, known = critical_speeds_of(resting, excitation, operating_Hz, sought)
+    critical, known, maxima = critical_speeds_of(resting, excitation, operating_Hz, solved)
     if speeds_Hz is None:
-        resting = known
+        resting = known if known[0].films else _with_curves(known, maxima, solved)
     return _response(case, system, resting, critical, excitation)
 
 
@@ -349,18 +348,18 @@ def critical_speeds_of(
     points: Sequence[StabilityPoint],
     excitation: str,
     operating_Hz: tuple[float, float] | None,
-    solved: Callable[[Sequence[float]], list[StabilityPoint]] | None,
-) -> tuple[tuple[CriticalSpeed, ...], list[StabilityPoint]]:
-    """The peaks of the response between points at ascending speeds, and the points including additional solved ones.
+    solved: Callable[[Sequence[float]], list[StabilityPoint]],
+) -> tuple[tuple[CriticalSpeed, ...], list[StabilityPoint], list[ResponsePeak]]:
+    """The critical speeds between points at ascending speeds, the points including additional solved ones, and the
+    peaks of the response.
 
-    solved: the points that rest at speeds in Hz. Films are solved at their peaks until these stay where they are;
-    without films the points of a curve around each peak are; None where no curve is asked for."""
+    solved: the points that rest at speeds in Hz. Films are solved at their peaks until these stay where they are."""
     known, rounds = list(points), ROUNDS if points[0].films else 0
     model = _model(known, excitation)
     maxima = peaks(model)
     for _ in range(rounds):
         far = [peak.omega for peak in maxima if np.min(np.abs(model.omegas - peak.omega)) > CLOSE * peak.omega]
-        more = solved([omega / TURN for omega in far]) if far and solved is not None else []
+        more = solved([omega / TURN for omega in far]) if far else []
         if not more:
             break
         known = sorted([*known, *more], key=attrgetter("speed_Hz"))
@@ -368,12 +367,19 @@ def critical_speeds_of(
         maxima = peaks(model)
     others = [(_model(known, excitation, number), share) for number, share in _shares(known)]
     critical = tuple(_critical(model, others, peak, known[0], operating_Hz) for peak in maxima)
-    if not points[0].films and solved is not None:
-        bounded = [peak for peak in maxima if math.isfinite(peak.amplitude)]
-        curve = np.unique([peak.omega + abs(peak.pole.imag) * WIDTHS for peak in bounded])
-        inside = curve[(curve > model.omegas[0]) & (curve < model.omegas[-1])] / TURN
-        known = sorted([*known, *(solved(inside.tolist()) if len(inside) else [])], key=attrgetter("speed_Hz"))
-    return critical, known
+    return critical, known, maxima
+
+
+def _with_curves(
+    points: Sequence[StabilityPoint],
+    maxima: Sequence[ResponsePeak],
+    solved: Callable[[Sequence[float]], list[StabilityPoint]],
+) -> list[StabilityPoint]:
+    """The points of a machine without films including those of a curve around each bounded peak."""
+    bounded = [peak for peak in maxima if math.isfinite(peak.amplitude)]
+    curve = np.unique([peak.omega + abs(peak.pole.imag) * WIDTHS for peak in bounded]) / TURN
+    inside = curve[(curve > points[0].speed_Hz) & (curve < points[-1].speed_Hz)]
+    return sorted([*points, *(solved(inside.tolist()) if len(inside) else [])], key=attrgetter("speed_Hz"))
 
 
 def _model(points: Sequence[StabilityPoint], excitation: str, other: int | None = None) -> SpeedModel:

@@ -76,6 +76,8 @@ BUFFER = 16384  # output samples between two looks at the clock, at least
 # Steps between two looks at the clock, which cannot be interrupted: as many as take CHUNK_s.
 FIRST_BUDGET, BUDGET, GROWTH = 4, 5000, 8.0
 CHUNK_s = 0.1
+# After so much of a run, or of its clock in s, its pace is known: the first steps from rest are short.
+KNOWN_SHARE, KNOWN_s = 0.01, 1.0
 # A run with this many times the expected steps makes no progress and is stopped.
 RUNAWAY, FEWEST_STEPS = 100, 2_000_000
 UNBOUNDED = 1e6  # displacement over the length of a machine without films from which it counts as unbounded
@@ -99,10 +101,6 @@ class Progress:
     for_error: bool = False
     cpu_s: float = 0.0
     over_plan: float = 0.0
-
-
-# After so much of a run, or of its clock in s, its pace is known: the first steps from rest take longest.
-KNOWN_SHARE, KNOWN_s = 0.01, 1.0
 
 
 def time_left(t: float, end: float, wall_s: float) -> float:

@@ -20,7 +20,8 @@ ROW = re.compile(r"^\| `frb (.+?)` \| (\d+) \| (.*?) \| (.*?) \|$", re.MULTILINE
 # no results for people
 TEXTS = ("--help", "--version", "cases jeffcott", "schema", "docs conventions --text", "export run.h5 -o -")
 # Said on slow machines, and where kernels are not compiled yet
-PROGRESS = re.compile(r"^(?:.*\d+ of \d+.*|.*\d:\d\d left.*|Compiling the kernels, once.*)\n", re.MULTILINE)
+LEFT, COUNT, COMPILING = r".*(?:\d:\d\d|\?) left.*", r"(?:frame )?\d+ of \d+", "Compiling the kernels, once.*"
+PROGRESS = re.compile(rf"^(?:{LEFT}|{COUNT}|{COMPILING})\n", re.MULTILINE)
 # Their documents: test_cli_limit_cycles.py, that of the same picture that does not move, test_fit.py
 LONG = (
     "limit-cycles my.toml --set film.theory=short --csv cycles.csv",

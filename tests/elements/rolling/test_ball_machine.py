@@ -152,11 +152,23 @@ def test_keys_have_their_meaning() -> None:
     assert deep.rings.free == pytest.approx(4e-6, rel=1e-9)
 
 
+def axial_force(rings: BallBearing, moved: float) -> tuple[float, float]:
+    """N on a row whose inner ring is moved along the axis from first contact, and on each ball, without speed:
+    Z K (A (cos(alpha_0) / cos(alpha) - 1))^1.5 sin(alpha)."""
+    inner, outer = (each.stiffness ** (-2.0 / 3.0) for each in rings.contacts)
+    radial, axial = (rings.grooves * each(rings.contact_angle) for each in (math.cos, math.sin))
+    length = math.hypot(radial, axial + moved)
+    load = (max(length - rings.grooves, 0.0) / (inner + outer)) ** 1.5
+    return rings.balls * load * (axial + moved) / length, load
+
+
 @pytest.mark.parametrize("preload", [{"offset": "5 um"}, "60 N"])
 def test_a_preload_that_dents_the_balls_is_remarked(preload: Any) -> None:
     rings = BallBearingElement(key="", given=on_balls({**A, "preload": preload}).given_bearings[0]).rings
-    balls, (inner, _) = at_displacement(rings, np.zeros(2), 0.0).balls, rings.contacts
-    assert rings.preload_pressure == pytest.approx(inner.pressure(float(balls.inner_load.max())), rel=1e-9)
+    pressed = brentq(lambda z: axial_force(rings, z)[0] - 60.0, 0.0, 1e-4, xtol=1e-16)
+    moved = 5e-6 if isinstance(preload, dict) else pressed
+    load = axial_force(rings, moved)[1]
+    assert rings.preload_pressure == pytest.approx(rings.contacts[0].pressure(load), rel=1e-8)
     assert not remarks(on_balls({**A, "preload": preload}, LOAD, unbalance=1e-6))
     dented = on_balls({**A, "preload": {"offset": "60 um"} if isinstance(preload, dict) else "20 kN"}, LOAD, 2.0, 1e-6)
     assert all("ISO 76" in sentence for sentence in remarks(dented))
@@ -300,17 +312,13 @@ def held_pair(thrust: float, square: float = 0.0, turning: bool = False) -> Ball
 
 
 def test_a_held_pair_shares_the_axial_load_as_its_closed_form() -> None:
-    """Without speed a row bears Z K (A (cos(alpha_0) / cos(alpha) - 1))^1.5 sin(alpha): the difference is the load."""
+    """The difference of both rows is the load."""
     rings = held_pair(120.0)
-    inner, outer = (each.stiffness ** (-2.0 / 3.0) for each in rings.contacts)
-    radial, axial = (rings.grooves * each(rings.contact_angle) for each in (math.cos, math.sin))
 
-    def force(moved: float) -> float:
-        length = math.hypot(radial, axial + moved)
-        pressed = max(length - rings.grooves, 0.0) / (inner + outer)
-        return float(rings.balls * pressed**1.5 * (axial + moved) / length)
+    def missing(z: float) -> float:
+        return axial_force(rings, 5e-6 + z)[0] - axial_force(rings, 5e-6 - z)[0] - 120.0
 
-    z = brentq(lambda z: force(5e-6 + z) - force(5e-6 - z) - 120.0, 0.0, 2e-5, xtol=1e-16)
+    z = brentq(missing, 0.0, 2e-5, xtol=1e-16)
     found = at_displacement(rings, np.zeros(2), 0.0)
     assert found.displacement[2] == pytest.approx(z, rel=1e-8)
     assert found.force[2] == pytest.approx(-120.0, rel=1e-9)
