@@ -57,7 +57,7 @@ from frbcli.scene.machine.turbocharger import shaft_of
 
 UNBALANCE = "unbalance"  # as excitation
 SPEEDS = 120  # of the default sweep
-ROUNDS = 4  # in which films are solved at their peaks
+ROUNDS = 4  # in which machines whose coefficients change with the speed are solved at their peaks
 SHARP = 1e-6  # relative error of the speed of a peak of given coefficients
 TURN = 2.0 * math.pi
 # Larger semi-axis over the gap that is left at rest, above which linear coefficients are doubtful. Against the
@@ -353,8 +353,9 @@ def critical_speeds_of(
     """The critical speeds between points at ascending speeds, the points including additional solved ones, and the
     peaks of the response.
 
-    solved: the points that rest at speeds in Hz. Films are solved at their peaks until these stay where they are."""
-    known, rounds = list(points), ROUNDS if points[0].films else 0
+    solved: the points that rest at speeds in Hz. Where coefficients change with the speed, they are solved at the peaks
+    until these stay where they are."""
+    known, rounds = list(points), ROUNDS if _changes(points[0]) else 0
     model = _model(known, excitation)
     maxima = peaks(model)
     for _ in range(rounds):
@@ -382,11 +383,16 @@ def _with_curves(
     return sorted([*points, *(solved(inside.tolist()) if len(inside) else [])], key=attrgetter("speed_Hz"))
 
 
+def _changes(point: StabilityPoint) -> bool:
+    """Whether a machine has other coefficients at each speed, of films or of forces at ports such as ball bearings."""
+    return bool(point.films) or (point.rotor is not None and bool(point.rotor.slopes))
+
+
 def _model(points: Sequence[StabilityPoint], excitation: str, other: int | None = None) -> SpeedModel:
     """The response between points, on their own films or on another mesh, by its number."""
     rotors = [point.rotor for point in points if point.rotor is not None]
     base, changes = rotors[0], []
-    for point, rotor in zip(points, rotors, strict=True) if points[0].films else ():
+    for point, rotor in zip(points, rotors, strict=True) if _changes(points[0]) else ():
         omega = TURN * point.speed_Hz
         coefficients = coefficients_of(point.films) if other is None else point.others[other][:2]
         _, damping, stiffness = linearised(rotor, omega, *coefficients)
@@ -415,10 +421,10 @@ def _critical(
     errors."""
     speed, bounded = peak.omega / TURN, math.isfinite(peak.amplitude)
     error = SHARP * speed
-    if point.films:
+    if _changes(point):
         apart = [share * abs(moved(other, peak) - peak.omega) / TURN for other, share in others]
         left = float(np.min(np.abs(model.omegas - peak.omega))) / TURN
-        error = max(LEAST * speed, left, *apart) if apart else math.nan
+        error = math.nan if point.films and not apart else max(LEAST * speed if apart else error, left, *apart)
     mode, direction, decrement = model.mode(peak.omega)
     rotor = point.rotor
     return CriticalSpeed(

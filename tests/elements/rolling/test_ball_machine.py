@@ -385,3 +385,38 @@ def test_an_axial_load_that_takes_the_preload_off_a_row_is_remarked() -> None:
 
     assert not said("40 N")
     assert len(said("4 kN")) == 1
+
+
+def on_two_bearings(front: dict[str, Any]) -> frbcli.Case:
+    """A shaft with a disk between a front and a rear ball bearing, without films, up to 1000 Hz."""
+    balls = {"kind": "ball", "balls": 12, "ball_diameter": "4 mm", "pitch_diameter": "20 mm", "contact_angle": "15 deg",
+             "damping": "500 N*s/m", "preload": "60 N"}  # fmt: skip
+    data = {
+        "rotor": {"kind": "turbocharger"},
+        "shaft": [{"length": "80 mm", "diameter": "10 mm"}],
+        "disk": [{"name": "wheel", "position": "75 mm", "mass": "0.3 kg", "polar_inertia": "60 kg*mm^2",
+                  "diametral_inertia": "40 kg*mm^2", "unbalance": "0.2 g*mm"}],
+        "bearing": [{"name": "front", "position": "25 mm", **balls, **front},
+                    {"name": "rear", "position": "60 mm", **balls}],
+        "speed": {"from": "0 Hz", "to": "1000 Hz", "duration": "0.5 s"},
+    }  # fmt: skip
+    return case_from_dict(data, "balls")
+
+
+@pytest.mark.parametrize("front", [{}, {"arrangement": "back-to-back", "row_distance": "10 mm",
+                                        "preload": {"offset": "4 um"}}])  # fmt: skip
+def test_critical_speeds_follow_the_stiffness_that_balls_have_at_them(front: dict[str, Any]) -> None:
+    """Balls soften with the speed: each peak of the response solved speed by speed is a critical speed, and no other
+    one is."""
+    case = on_two_bearings(front)
+    dense = frbcli.response(case, np.linspace(10.0, 1000.0, 100).tolist())
+    height = dense.amplitude.max(axis=1)
+    tops = [k for k in range(1, 99) if height[k - 1] < height[k] > height[k + 1]]
+    peaks = frbcli.response(case).critical_speeds
+    assert len(peaks) == len(tops) >= 1
+    for peak, top in zip(peaks, tops, strict=True):
+        around = np.linspace(0.999, 1.001, 21) * peak.speed_Hz
+        near = frbcli.response(case, around.tolist()).amplitude.max(axis=1)
+        assert peak.speed_Hz == pytest.approx(dense.speeds_Hz[top], abs=10.0)
+        assert peak.amplitude == pytest.approx(near.max(), rel=1e-3)
+        assert peak.speed_Hz == pytest.approx(around[near.argmax()], rel=1.5e-4)
