@@ -99,7 +99,8 @@ def _without_round_off(value: Any) -> list[float]:
 
 def speed_shown(form: str = ".4g", head: str = "Hz", table: str = "") -> Shown:
     """A rotor speed in Hz in a table of the terminal. head: ends with Hz."""
-    return Shown(head, form, table=table, per_minute=Shown(f"{head[:-2]}rpm", SpeedUnit(rpm=True).number, table=table))
+    per_minute = Shown(f"{head[:-2]}rpm", SpeedUnit(rpm=True).number, "rpm", table)
+    return Shown(head, form, table=table, per_minute=per_minute)
 
 
 def uncertain_speed(head: str = "speed, Hz", digits: int = 1, table: str = "", unit: str = "") -> Shown:

@@ -18,7 +18,9 @@ HERTZ = ("--set", "speed.to=300 Hz")
 # the command, with how its text names a speed in rpm
 COMMANDS: dict[str, tuple[tuple[str, ...], str]] = {
     "stability": (("stability", "jeffcott", "--threshold", "--no-picture"), r"above 10632 rpm the rotor whirls"),
-    "bearing": (("bearing", "jeffcott", "--no-picture"), r"rpm: rotor speed"),
+    "bearing": (("bearing", "jeffcott", "--no-picture"), r"rpm: rotor speed;"),
+    "balls": (("bearing", "turbocharger-ball", "--load", "60 N", "--no-picture"), r"rpm: rotor speed;"),
+    "thrust": (("thrust", "turbocharger-car-thrust", "--no-picture"), r"rpm: rotor speed;"),
     "runup": (("runup", "jeffcott", "--no-picture", "--set", "speed.duration=2 s", "-o", "run.h5", "--force"),
               r"speed, rpm"),
 }  # fmt: skip

@@ -73,7 +73,7 @@ def test_the_document_has_the_keys_of_the_sheet(
     assert len((tmp_path / "sheet.csv").read_text().splitlines()) == 4
 
 
-def test_several_bearings_have_their_names() -> None:
+def test_several_bearings_have_their_names_and_a_sum(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     case = frbcli.load_case("thrust")
     (bearing,) = case.thrust_bearings
     table = {"side": "left", **{name: getattr(bearing, name) for name in
@@ -81,3 +81,9 @@ def test_several_bearings_have_their_names() -> None:
     two = frbcli.case_from_dict({"oil": {"viscosity": 8e-3}, "thrust_bearing": [table, {**table, "name": "rear"}]})
     assert [state.bearing for state in frbcli.thrust_sheet(two, [15e-6], SPEED).points] == ["1", "rear"]
     assert frbcli.load_case_text(two.source_text).thrust_bearings == two.thrust_bearings
+    (file := tmp_path / "two.toml").write_text(two.source_text)
+    assert run(["thrust", str(file), "--gap", "15 um", "--speed", "2 kHz", "--no-picture"]) == 0
+    (one, _) = frbcli.thrust_sheet(two, [15e-6], SPEED).points
+    flow = 2.0 * 6e4 * (one.flow_inner + one.flow_outer)
+    said = f"All thrust bearings at 2000 Hz: {2.0 * one.power:.4g} W loss, {flow:.3g} l/min oil."
+    assert said in capsys.readouterr().out

@@ -27,7 +27,7 @@ from frbcli.cli.options import (
     speeds_option,
 )
 from frbcli.cli.progress import OutputOptions, computing, display, outputs_options
-from frbcli.cli.studies.static_tables import film_document, show_film, show_machine
+from frbcli.cli.studies.static_tables import LITRES_PER_MINUTE, film_document, show_film, show_machine
 from frbcli.errors import INTERRUPTED, NotConverged
 
 if TYPE_CHECKING:
@@ -261,7 +261,7 @@ def ball_sheet(
 
 
 def _show_balls(terminal: Terminal, sheet: BallSheet) -> None:
-    from frbcli.columns import legend, table_of
+    from frbcli.columns import legend, table_of, with_speeds_in
     from frbcli.elements.ball import RATING_PRESSURE
     from frbcli.linear.columns import BALL_SHEET, BALLS, FREQUENCIES, STIFFNESSES
     from frbcli.units import display
@@ -271,7 +271,8 @@ def _show_balls(terminal: Terminal, sheet: BallSheet) -> None:
         titles = {BALLS: f"{name}, balls", STIFFNESSES: "rings, um and N/um", FREQUENCIES: "frequencies, Hz"}
         for table, title in titles.items():
             terminal.show(title, table_of(BALL_SHEET, states), table)
-    terminal.sentence(f"{legend(BALL_SHEET, BALLS)}. All per bearing, with one ball in the line of the load.")
+    columns = with_speeds_in(terminal.speeds, BALL_SHEET)
+    terminal.sentence(f"{legend(columns, BALLS)}. All per bearing, with one ball in the line of the load.")
     dented = [state for state in sheet.points if max(state.inner_p_max, state.outer_p_max) > RATING_PRESSURE]
     if dented:
         share, limit = f"{len(dented)} of {len(sheet.points)} states", display(RATING_PRESSURE, "Pa")
@@ -315,16 +316,24 @@ def thrust(
 
 
 def _show_thrust(terminal: Terminal, sheet: ThrustSheet) -> None:
-    from frbcli.columns import legend, table_of
+    from frbcli.columns import legend, table_of, with_speeds_in
     from frbcli.linear.columns import FILMS, THRUST, TILT_DAMPING, TILT_STIFFNESS
 
     titles = {FILMS: "thrust bearing", TILT_STIFFNESS: "stiffness in tilt, N m", TILT_DAMPING: "damping in tilt, N m s"}
     for bearing in sheet.bearings:
-        states = table_of(THRUST, sheet.of(bearing))
+        rows = table_of(THRUST, sheet.of(bearing))
         terminal.result(" ".join(filter(None, (sheet.case.heading, bearing))))
         for table, title in titles.items():
-            terminal.show(title, states, table)
-    terminal.sentence(f"{legend(THRUST, FILMS)}. Errors are the change from a mesh of half as many elements per side.")
+            terminal.show(title, rows, table)
+    for speed in dict.fromkeys(state.speed_Hz for state in sheet.points):
+        states = [state for state in sheet.points if state.speed_Hz == speed]
+        if len(sheet.bearings) > 1 and [state.bearing for state in states] == list(sheet.bearings):
+            power = sum(state.power for state in states)
+            flow = sum(state.flow_inner + state.flow_outer for state in states)
+            whole = f"{power:.4g} W loss, {LITRES_PER_MINUTE * flow:.3g} l/min oil"
+            terminal.sentence(f"All thrust bearings at {terminal.speeds.words(speed)}: {whole}.")
+    explained = legend(with_speeds_in(terminal.speeds, THRUST), FILMS)
+    terminal.sentence(f"{explained}. Errors are the change from a mesh of half as many elements per side.")
 
 
 LARGEST = "Values are from the moment of the largest force."
