@@ -125,6 +125,22 @@ TOUCHING: tuple[tuple[str, tuple[str, ...]], ...] = (
 OF_SURFACES = ("contact.", "film.bubbly.", "film.cavitation", "bearing.ends", "bearing.supply.flow",
                "bearing.supply.pressure")  # fmt: skip
 
+# Seeds from this one on have one or two nasty values of what rotors have beside films.
+ELEMENTS = 300_000
+STOP = 'spring=[{ at = "disk_turbine", gap = "20 um", stiffness = "1e6 N/m", friction = 0.2, damping = "100 N*s/m" }]'
+CUBIC = 'spring=[{ at = "journal", stiffness = "1e5 N/m", cubic = "1e15 N/m^3" }]'
+ON_BALLS = str(Path(__file__).parents[1] / "data" / "rotor-on-balls.toml")
+DRIVEN = ('drive={ start = "20 Hz", torque = "0.5 N*m", duration = "0.1 s", load = "1e-3 N*m/Hz" }',
+          "rotor.polar_inertia=2.7e-3 kg*m^2")  # fmt: skip
+WITH_ELEMENTS: tuple[tuple[str, tuple[str, ...]], ...] = (
+    (ON_BALLS, ()),
+    ("turbocharger-ball", (STOP,)),
+    ("jeffcott", ("film.theory=short", CUBIC, 'rotor.loss={ time = "0.05 s", unbalance = "5 g*mm" }')),
+    ("coast-down", DRIVEN),
+    ("blade-loss", ("film.theory=short", 'bow=[{ position = "50 mm", offset = "3 um" }]')),
+    ("turbocharger-car-thrust", ()),
+)  # fmt: skip
+
 
 class TooLong(BaseException):
     """A command took longer than it may."""
@@ -139,14 +155,18 @@ def trial(seed: int) -> tuple[tuple[str, ...], str, list[str]]:
         source, settings = BASES[chance.choice((0, HEATED, HEATED))]
     if "--modes" in command and chance.random() < 0.8:
         source, settings = BASES[-1]
-    if seed >= SURFACES:
+    if SURFACES <= seed < ELEMENTS:
         source, settings = TOUCHING[chance.randrange(len(TOUCHING))]
         if command[0] == "response" and "film.cavitation=bubbly" in settings:  # takes more than 400 s of CPU time
             source, settings = TOUCHING[0]
-    settings = (*settings, *SHORT_RUN, MOTION, *NEEDS.get(command[0], ()))
+    if seed >= ELEMENTS:
+        source, settings = WITH_ELEMENTS[chance.randrange(len(WITH_ELEMENTS))]
+    short = [each for each in SHORT_RUN if settings is not DRIVEN or not each.startswith("speed.")]
+    of_films = () if source == ON_BALLS else (MOTION, *NEEDS.get(command[0], ()))
+    settings = (*settings, *short, *of_films)
     known = [value for value in _base(source, settings) if value.key.partition(".")[0] not in ("name", "title")]
     count = 2
-    if seed >= SURFACES:
+    if SURFACES <= seed < ELEMENTS:
         known, count = [value for value in known if value.key.startswith(OF_SURFACES)], chance.choice((1, 1, 2))
     numbers = [value for value in known if isinstance(value.value, float)]
     nasty = []
