@@ -165,9 +165,9 @@ def trial(seed: int) -> tuple[tuple[str, ...], str, list[str]]:
     of_films = () if source == ON_BALLS else (MOTION, *NEEDS.get(command[0], ()))
     settings = (*settings, *short, *of_films)
     known = [value for value in _base(source, settings) if value.key.partition(".")[0] not in ("name", "title")]
-    count = 2
+    count = 2 if seed < SURFACES else chance.choice((1, 1, 2))
     if SURFACES <= seed < ELEMENTS:
-        known, count = [value for value in known if value.key.startswith(OF_SURFACES)], chance.choice((1, 1, 2))
+        known = [value for value in known if value.key.startswith(OF_SURFACES)]
     numbers = [value for value in known if isinstance(value.value, float)]
     nasty = []
     for value in chance.sample(numbers if chance.random() < 0.8 else known, count):
