@@ -282,10 +282,6 @@ BALLS, STIFFNESSES, FREQUENCIES = "balls", "stiffness", "frequencies"
 BALL_TABLES = (BALLS, STIFFNESSES, FREQUENCIES)
 
 
-def _hours(life: float) -> str:
-    return f"{life:.3g} h"
-
-
 # Of a BallState
 BALL_SHEET = (
     Column("bearing", "", "name of the ball bearing, empty of one alone"),
@@ -323,7 +319,7 @@ BALL_SHEET = (
            shown=(Shown("inner", ".5g", table=FREQUENCIES),)),
     Column("ball_spin", "Hz", "spin of a ball", shown=(Shown("spin", ".5g", table=FREQUENCIES),)),
     Column("rating_life", "h", "basic rating life L10 by the loads of the balls, ISO/TS 16281", attrgetter("life_h"),
-           more="with `dynamic_rating`", shown=(Shown("life", _hours, table=FREQUENCIES),)),
+           more="with `dynamic_rating`", shown=(Shown("life", "{:.3g} h".format, table=FREQUENCIES),)),
 )  # fmt: skip
 
 
