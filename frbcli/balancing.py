@@ -23,7 +23,7 @@ import numpy as np
 from frbcli.analysis.measured import MEASURED
 from frbcli.analysis.order_tracking import FEWEST as LEAST_REVOLUTIONS
 from frbcli.analysis.order_tracking import MARK, REVOLUTIONS, STEPS, OrderTrack, order_track
-from frbcli.analysis.signals import RunLike, SignalOf, course, joined, points
+from frbcli.analysis.signals import RunLike, course, joined, points, signal_of
 from frbcli.arrays import Array, Complex, Truths
 from frbcli.case.reading.load import load_case_text
 from frbcli.case.schema import Case
@@ -83,7 +83,7 @@ def synchronous_vectors(
 
 def _window(run: RunLike) -> int:
     """Revolutions of the windows: fewer than usual in a run that makes few."""
-    time, speed = course(SignalOf(run, TIME), SignalOf(run, "speed_Hz"))
+    time, speed = course(signal_of(run, TIME), signal_of(run, "speed_Hz"))
     turned = float(np.sum(0.5 * np.abs(speed[1:] + speed[:-1]) * np.diff(time)))
     return max(LEAST_REVOLUTIONS, min(REVOLUTIONS, int(WINDOWS * turned)))
 

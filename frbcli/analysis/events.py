@@ -232,7 +232,7 @@ def about_critical_speeds(
         return []
     known = [Event(**{name: each[name] for name in ("kind", "film", "t_s", "speed_Hz", "frequency_Hz",
                                                      "frequency_ratio")}) for each in events]  # fmt: skip
-    time_s, speed = signals.course(signals.SignalOf(run, "time_s"), signals.SignalOf(run, "speed_Hz"))
+    time_s, speed = signals.course(signals.signal_of(run, "time_s"), signals.signal_of(run, "speed_Hz"))
     quiet = _quiet_spans(known, float(time_s[-1]))
     modes = signals.critical_speeds(run)
     if modes is None:

@@ -5,8 +5,9 @@ Times of measured samples: which rise, which are even but rounded, and signals a
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -56,27 +57,28 @@ class RunLike(Protocol):
 
 
 @dataclass(frozen=True)
-class SignalOf:
-    """A signal (n,) of a run, read slice by slice."""
+class SlicedColumn:
+    """Values (n,) that are read, or computed of others, slice by slice. of: from one sample to before another."""
 
-    run: RunLike
-    name: str
+    length: int
+    of: Callable[[int, int], Array]
 
     def __len__(self) -> int:
-        return len(self.run)
+        return self.length
 
-    def __getitem__(self, where: slice) -> Array:
-        return self._piece(where.start or 0, len(self) if where.stop is None else where.stop)
-
-    def _piece(self, start: int, stop: int) -> Array:
-        return piece(self.run, self.name, start, stop)
+    def __getitem__(self, where: slice, /) -> Array:
+        first, last, _ = where.indices(self.length)
+        return self.of(first, last)
 
 
-class RingSpeed(SignalOf):
-    """The speed (n,) in Hz of the ring of a bearing with a name, read slice by slice; 0 of one that does not turn."""
+def signal_of(run: RunLike, name: str) -> SlicedColumn:
+    """A signal (n,) of a run."""
+    return SlicedColumn(len(run), partial(piece, run, name))
 
-    def _piece(self, start: int, stop: int) -> Array:
-        return ring_speed(self.run, self.name, start, stop)
+
+def ring_speed_of(run: RunLike, name: str) -> SlicedColumn:
+    """The speed (n,) in Hz of the ring of a bearing with a name; 0 of one that does not turn."""
+    return SlicedColumn(len(run), partial(ring_speed, run, name))
 
 
 def piece(run: RunLike, name: str, start: int, stop: int) -> Array:
@@ -168,12 +170,6 @@ def ring_speed(run: RunLike, name: str, start: int = 0, stop: int | None = None)
     return piece(run, signal, start, stop) if signal in set(run.signals) else np.zeros(stop - start)
 
 
-def film_clearance(run: RunLike, film: str = "") -> float | None:
-    """The clearance in m of a film by its name, or else the common one; None if the run does not state it."""
-    lengths = run.references
-    return lengths.get(joined("clearance_m", film), lengths.get("clearance_m"))
-
-
 def in_film(run: RunLike, bearing: str) -> bool:
     """Whether the journal of a bearing is in a film; elsewhere nothing says how far it can move."""
     known = set(films(run.signals))
@@ -220,9 +216,11 @@ def times_of(run: RunLike, change: str) -> list[float]:
 def bearing_clearance(run: RunLike, name: str = "") -> float | None:
     """How far in m the journal of a bearing can move: the clearance, of a floating ring the sum of both, plus the
     damper's."""
-    damper, room = run.references.get(joined("clearance_m", name, "damper")), film_clearance(run, name)
+    lengths = run.references
+    damper, common = lengths.get(joined("clearance_m", name, "damper")), lengths.get("clearance_m")
+    room = lengths.get(joined("clearance_m", name), common)
     if name in points(run.signals, "ring"):
-        both = [run.references.get(joined("clearance_m", name, side)) for side in ("inner", "outer")]
+        both = [lengths.get(joined("clearance_m", name, side)) for side in ("inner", "outer")]
         known = [length for length in both if length is not None]
         room = sum(known) if len(known) == 2 else room
     elif damper is not None and name not in films(run.signals):

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.analysis import signals
-from frbcli.analysis.signals import PIECE, RingSpeed, RunLike, SignalOf, steepest_ramp
+from frbcli.analysis.signals import PIECE, RunLike, ring_speed_of, signal_of, steepest_ramp
 from frbcli.analysis.spectrum import crossing, fast_length, hann, local_maxima, summit
 from frbcli.arrays import Array, Complex
 
@@ -161,7 +161,7 @@ def find_whirls(run: RunLike, name: str, room: float, settled_s: float = 0.0) ->
     if hop < 1 or count < 2 * width:
         return ()
     middle = np.arange(0, count - width + 1, hop) + width // 2
-    columns = (SignalOf(run, "time_s"), SignalOf(run, "speed_Hz"), RingSpeed(run, name))
+    columns = (signal_of(run, "time_s"), signal_of(run, "speed_Hz"), ring_speed_of(run, name))
     time, speed, ring = (signals.samples(column, middle) for column in columns)
     windows = _Windows(run, name, room, width, hop, step)
     followed = _follow(windows.peaks(SYNCHRONOUS * speed), window_s)
@@ -202,7 +202,7 @@ def window_step_s(run: RunLike) -> float:
 
 def _window_length(run: RunLike) -> float:
     """Length in s of the windows: a steep ramp asks for short ones."""
-    ramp = steepest_ramp(SignalOf(run, "time_s"), SignalOf(run, "speed_Hz"))
+    ramp = steepest_ramp(signal_of(run, "time_s"), signal_of(run, "speed_Hz"))
     return min(LONGEST_s, (SWEEP / ramp) ** 0.5) if ramp > 0.0 else LONGEST_s
 
 

@@ -75,11 +75,6 @@ def whirl_path(eccentricity: float, frequency: float, omega: float) -> Path:
     return path
 
 
-def inclined_path(path: Path, slope: tuple[float, float]) -> Path:
-    """The path of a journal that keeps a tilt against its shell. slope: see Motion."""
-    return lambda time: replace(path(time), slope=slope)
-
-
 @dataclass(frozen=True)
 class Moment:
     """A film at a time in s: its motion and its solution."""
@@ -336,7 +331,7 @@ def _error_of_course(
     coarser = _coarser(plan)
     film = _moving(case, coarser, path, times)
     try:
-        coarse, problem = _moments(case, film, every_second(times))
+        coarse, problem = _moments(case, film, np.append(times[:-1:2], times[-1]))
     except NotConverged:
         return math.nan, 0
     spent = sum(moment.iterations for moment in coarse)
@@ -380,11 +375,6 @@ def _coarser(plan: KinematicPlan) -> KinematicPlan:
     return replace(plan, cells=(around // 2, max(along // 2, 2)))
 
 
-def every_second(times: Array) -> Array:
-    """The times with every second step left out, the last one kept."""
-    return np.append(times[:-1:2], times[-1])
-
-
 def _peaks(case: Case, times: Array, moments: Sequence[MovedFilm]) -> dict[int, float]:
     """The largest force in N of each period."""
     assert case.motion is not None
@@ -398,7 +388,11 @@ def _peaks(case: Case, times: Array, moments: Sequence[MovedFilm]) -> dict[int, 
 
 def _moving(case: Case, plan: KinematicPlan, path: Path, times: Array) -> _MovingFilm:
     """The film of a journal that moves along a path of the lab. Raises NotConverged where it touches an end."""
-    inclined = inclined_path(path, slope_of(tilt_of(case), plan.section))
+    slope = slope_of(tilt_of(case), plan.section)
+
+    def inclined(time: float) -> Motion:
+        return replace(path(time), slope=slope)
+
     for time in times if inclined(0.0).tilts else ():
         require_gap(plan.section, inclined(time))
     seen, mirrored = path_seen_from(inclined, plan.turning), case.bearings[0].films[0].supply.mirrored

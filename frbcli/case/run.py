@@ -8,7 +8,7 @@ from __future__ import annotations
 import itertools
 import math
 from bisect import bisect_right
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -40,7 +40,7 @@ from frbcli.case.model import (
 )
 from frbcli.case.over_time import Entry, MachineTable, over_time_problem
 from frbcli.case.reading.settings import TomlFault, parse
-from frbcli.case.reading.tables import Breach, Path, pairs, table
+from frbcli.case.reading.tables import Breach, Path, as_number, pairs, table
 from frbcli.units import NUMBER, SPEED, SpeedUnit, ValueFault, display, is_per_minute, quantity
 
 if TYPE_CHECKING:
@@ -98,10 +98,11 @@ def speed_unit_of(run: Run) -> SpeedUnit:
 
 
 def _any_per_minute(given: object) -> bool:
-    if isinstance(given, Mapping):
-        return _any_per_minute(list(given.values()))
-    if isinstance(given, list):
-        return any(map(_any_per_minute, given))
+    match given:
+        case dict():
+            return any(map(_any_per_minute, given.values()))
+        case list():
+            return any(map(_any_per_minute, given))
     return is_per_minute(given)
 
 
@@ -243,17 +244,15 @@ class _Points(Reader):
 
     def read(self, given: object) -> TorquePoints:
         """Raises ValueFault."""
-        if isinstance(given, TorquePoints):
-            return given
-        if isinstance(given, dict) and given.keys() == TorquePoints.model_fields.keys():
-            over, places, torques = given["over"], given["at"], given["torque"]
-        elif (columns := pairs(given)) is not None:
-            places, torques = columns
-            over = "time" if self._are(places, "s") else "speed"
-        else:
-            raise ValueFault("is no list of speeds or times with torques.", self.remedy)
-        if over not in ("speed", "time") or not isinstance(places, list) or not isinstance(torques, list):
-            raise ValueFault("is no list of speeds or times with torques.", self.remedy)
+        match given, pairs(given):
+            case TorquePoints(), _:
+                return given
+            case {"over": "speed" | "time" as over, "at": list(places), "torque": list(torques), **more}, _ if not more:
+                pass
+            case _, (places, torques):
+                over = "time" if self._are(places, "s") else "speed"
+            case _:
+                raise ValueFault("is no list of speeds or times with torques.", self.remedy)
         try:
             unit = {"speed": SPEED, "time": "s"}[over]
             at, torque = tuple(quantity(each, unit) for each in places), tuple(TORQUE.read(each) for each in torques)
@@ -289,17 +288,15 @@ class _Loads(Reader):
 
     def read(self, given: object) -> BrakingLoad:
         """Raises ValueFault."""
-        if isinstance(given, BrakingLoad):
-            return given
-        if isinstance(given, dict) and given.keys() <= POWERS.keys():
-            return BrakingLoad(**{key: self._one(POWERS[key], value) for key, value in given.items()})
-        if isinstance(given, str):
-            for key, power in POWERS.items():
-                try:
-                    quantity(given, power.unit)
-                except ValueFault:
-                    continue
-                return BrakingLoad(**{key: self._one(power, given)})
+        match given:
+            case BrakingLoad():
+                return given
+            case dict() if given.keys() <= POWERS.keys():
+                return BrakingLoad(**{key: self._one(POWERS[key], value) for key, value in given.items()})
+            case str():
+                for key, power in POWERS.items():
+                    if as_number(given, power.unit) is not None:
+                        return BrakingLoad(**{key: self._one(power, given)})
         raise ValueFault("is no torque over a power of the speed.", self.remedy)
 
     def _one(self, power: Quantity, given: object) -> float:

@@ -157,6 +157,10 @@ class Case(Model):
 
         return with_settings(self, settings)
 
+    def refused(self, *faults: Fault) -> InputError:
+        """The error of what cannot be done with this case."""
+        return InputError(self.name or "case", faults)
+
     def same_run(self, other: Case) -> bool:
         """Whether `other` is the same machine and run; labels may differ."""
         return altered(self, _UNCOMPUTED) == altered(other, _UNCOMPUTED)
@@ -207,8 +211,7 @@ class Case(Model):
     def oil(self) -> Oil:
         """The lubricant. Raises InputError for a case without a film that has none."""
         if self.given_oil is None:
-            fault = Fault("oil", "", None, "is missing: the case has no film.", "Add the table [oil].")
-            raise InputError(self.name or "case", (fault,))
+            raise self.refused(Fault("oil", "", None, "is missing: the case has no film.", "Add the table [oil]."))
         return self.given_oil
 
     @property
@@ -253,7 +256,7 @@ class Case(Model):
         elif not self.bearings:
             problem = "is missing: the case is of ball bearings alone."
             remedy = "Call `frb bearing` with --load and --speed, or add [rotor] and [speed]."
-        return InputError(self.name or "case", (Fault(key, "", None, problem, remedy),))
+        return self.refused(Fault(key, "", None, problem, remedy))
 
     @property
     def heat(self) -> Thermal | None:

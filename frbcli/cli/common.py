@@ -77,10 +77,6 @@ class Terminal:
         """Whether stderr is a terminal, on which a progress line can be redrawn."""
         return not self.quiet and sys.stderr.isatty()
 
-    def live_console(self) -> Console:
-        """A rich console for progress."""
-        return _console(sys.stderr)
-
     def result(self, text: str = "") -> None:
         """Print a part of the results, without control characters other than new lines."""
         if not self.silent:
@@ -108,17 +104,17 @@ class Terminal:
         from rich.text import Text
 
         cells = [[printable(str(cell)) for cell in row] for row in rows]
-        console = _console(sys.stdout)
-        for kept in _parts(columns, cells, console.width, spans or (1,) * len(columns)):
+        terminal = console(sys.stdout)
+        for kept in _parts(columns, cells, terminal.width, spans or (1,) * len(columns)):
             named, shown = [columns[k] for k in kept], [[row[k] for k in kept] for row in cells]
             table = Table(title=title or None, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD)
             table.show_header = any(named)
-            for column, width in zip(named, _widths(named, shown, console.width), strict=True):
+            for column, width in zip(named, _widths(named, shown, terminal.width), strict=True):
                 table.add_column(column, overflow="fold", width=width)
             for row in shown:
                 table.add_row(*map(Text, row))
             with suppress(OutputLost):
-                console.print(table)
+                terminal.print(table)
             title = ""
 
     def remark(self, text: str) -> None:
@@ -222,7 +218,7 @@ def _write(stream: TextIO, text: str) -> None:
         stream.flush()
 
 
-def _console(stream: TextIO) -> Console:
+def console(stream: TextIO) -> Console:
     """A rich console on a stream; in a pipe or file its tables have no colours, and one width on all machines."""
     from rich.console import Console
 
@@ -321,16 +317,15 @@ def _as_json(letter: str) -> str:
 
 def _plain(value: object) -> object:
     """`value` as JSON knows it: arrays as lists, paths as text, what is not finite as null."""
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if value is None or isinstance(value, str | int):
-        return value
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, PurePath):
-        return str(value)
+    match value:
+        case float():
+            return value if math.isfinite(value) else None
+        case None | str() | int():
+            return value
+        case Mapping():
+            return {str(key): _plain(item) for key, item in value.items()}
+        case PurePath():
+            return str(value)
     if hasattr(value, "tolist"):  # arrays and scalars of numpy, without importing it
         return _plain(value.tolist())
-    if isinstance(value, Iterable):
-        return [_plain(item) for item in value]
-    raise TypeError(f"no JSON for {type(value).__name__}")
+    return [_plain(item) for item in cast("Iterable[object]", value)]

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 import re
+import sys
 import time
 import warnings
 from collections.abc import Callable, Iterable, Iterator
@@ -21,7 +22,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import click
 
-from frbcli.cli.common import WIDTH, Terminal
+from frbcli.cli.common import WIDTH, Terminal, console
 from frbcli.cli.options import CSV_FILE, OUTPUT, check_outputs, force_option, forced, gathered, look_options
 from frbcli.errors import InputError
 from frbcli.units import HERTZ, SpeedUnit
@@ -164,7 +165,7 @@ def display(terminal: Terminal, lines: str = COMPUTING) -> Iterator[Display]:
     from rich.live import Live
 
     shown = _Lines(lines)
-    with Live(shown, console=terminal.live_console(), refresh_per_second=REFRESH_Hz, transient=True):
+    with Live(shown, console=console(sys.stderr), refresh_per_second=REFRESH_Hz, transient=True):
         yield Display(terminal, shown.change)
 
 

@@ -351,7 +351,7 @@ class BallBearingElement(MachineElement):
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
         for key, bearing in zip(case.bearing_keys, case.placed_bearings, strict=True):
-            if isinstance(bearing, BallBearingKeys):
+            if bearing.kind == "ball":
                 top = 0.0 if case.given_speed is None else max(map(abs, case.given_speed.course[1]))
                 yield cls(key, bearing, _thrust(case, bearing), 2.0 * math.pi * top)
 

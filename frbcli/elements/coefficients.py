@@ -31,7 +31,7 @@ class GivenCoefficients(MachineElement):
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
         for key, bearing in zip(case.bearing_keys, case.placed_bearings, strict=True):
-            if isinstance(bearing, CoefficientsBearing):
+            if bearing.kind == "coefficients":
                 yield cls(key, bearing)
 
     def parts(self, site: Site) -> Parts:

@@ -36,7 +36,7 @@ from frbcli.case.elements import AnyLoad, LoadAtSpeed, ThrustBearing
 from frbcli.case.oil import Oil, Thermal, WallNode
 from frbcli.case.over_time import OverTime, largest
 from frbcli.case.schema import Case
-from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.errors import Fault, NotConverged
 from frbcli.film.pad_geometry import COARSE, SOMMERFELD, Pad
 from frbcli.film.pads import GapTable, PadOil, RunnerMotion, ScaledPads, gap_table, pad_film, pad_mesh
 from frbcli.rotor.loads import LinearPart, SpeedProfile
@@ -503,6 +503,5 @@ def axial_motion(case: Case, profile: SpeedProfile, mass: float) -> AxialMotion 
             f"changes so fast that the collar lifts off its pads: at {t:.4g} s pressures below oil.cavitation_pressure "
             f"would carry {share:.0%} of the load, and the films of a run are full."
         )
-        fault = Fault("axial.load", "", None, problem, "Let it rise more slowly.")
-        raise InputError(case.name or "case", (fault,))
+        raise case.refused(Fault("axial.load", "", None, problem, "Let it rise more slowly."))
     return motion

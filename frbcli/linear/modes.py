@@ -25,7 +25,7 @@ from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Table, Tabular, named, spread_table, table_of
 from frbcli.elements.coefficients import GivenCoefficients
-from frbcli.errors import Fault, InputError
+from frbcli.errors import Fault
 from frbcli.linear.columns import NATURAL_MODES, SPEED
 from frbcli.rotor.assembly import Link, assembled
 from frbcli.rotor.loads import first_largest, ranks
@@ -228,7 +228,7 @@ def _springs(case: Case, stiffness: float | Sequence[float] | None) -> Array:
         given *= count
     if len(given) not in (0, count):
         fault = Fault("stiffness", f"{len(given)} values", None, "are not as many as bearings.", "Give one for each.")
-        raise InputError(case.name or "case", (fault,))
+        raise case.refused(fault)
     return np.array(given, dtype=np.float64)
 
 
@@ -237,7 +237,7 @@ def _check_held(case: Case) -> None:
     what = "these are the modes of a shaft on springs to the ground"
     remedy = "Leave the stiffness out, or take the damped modes, frb stability --shapes SPEED, which have supports."
     if faults := support_faults(case, what, remedy):
-        raise InputError(case.name or "case", tuple(faults))
+        raise case.refused(*faults)
 
 
 def _check_own(case: Case) -> None:
@@ -249,12 +249,12 @@ def _check_own(case: Case) -> None:
         key, kind = next((key, bearing.kind) for key, bearing in keyed if bearing in resting)
         what = "films" if case.bearings else "balls"
         problem = f"has {what}, whose stiffness follows from the static equilibrium."
-        raise InputError(case.name or "case", (Fault(f"{key}.kind", kind, None, problem, remedy),))
+        raise case.refused(Fault(f"{key}.kind", kind, None, problem, remedy))
     for element in GivenCoefficients.of(case):
         k = element.linear.stiffness
         if not np.allclose(k, 0.5 * np.trace(k, axis1=1, axis2=2)[:, None, None] * np.eye(2), rtol=1e-9):
             problem = "differs with the direction or is cross-coupled: natural modes are those on isotropic springs."
-            raise InputError(case.name or "case", (Fault(f"{element.key}.stiffness", "", None, problem, remedy),))
+            raise case.refused(Fault(f"{element.key}.stiffness", "", None, problem, remedy))
 
 
 def _at_speed(modes: FreeModes, springs: Array, stiffness: Array, omega: float) -> ModesAtSpeed:
@@ -296,7 +296,7 @@ def _check(case: Case, springs: Array, speeds: Sequence[float] | Array) -> None:
         if not (math.isfinite(speed) and speed >= 0)
     ]
     if faults:
-        raise InputError(case.name or "case", tuple(faults))
+        raise case.refused(*faults)
 
 
 STIFFNESSES = 61
@@ -368,15 +368,13 @@ def critical_map(
         problem = "has coefficients of its own, and the map is of a rotor on springs of one stiffness."
         key, kind = first_without_film(case)
         remedy = "Leave --map out: the response has its own peaks."
-        fault = Fault(key, kind, None, problem, remedy)
-        raise InputError(case.name or "case", (fault,))
+        raise case.refused(Fault(key, kind, None, problem, remedy))
     on_ground = "the map is of a rotor on springs to the ground"
     if faults := support_faults(case, on_ground, "Leave --map out: the response has its own peaks."):
-        raise InputError(case.name or "case", tuple(faults))
+        raise case.refused(*faults)
     given = _default(case) if stiffness is None else np.array(sorted(stiffness), dtype=np.float64)
     if not len(given) or not (np.isfinite(given).all() and given[0] > 0.0):
-        fault = Fault("stiffness", "", None, "must be greater than 0.", 'Write e.g. "5e6 N/m".')
-        raise InputError(case.name or "case", (fault,))
+        raise case.refused(Fault("stiffness", "", None, "must be greater than 0.", 'Write e.g. "5e6 N/m".'))
     plane = _plane(case)
     forward, backward = (np.array([_criticals(plane, k, sign) for k in given]) for sign in (-1.0, 1.0))
     known = [(point.speed_Hz, direct_springs(case, point.films)) for point in resting if point.rests and point.films]

@@ -19,7 +19,7 @@ import numpy as np
 from frbcli.case.schema import Case
 from frbcli.columns import Table, Tabular, named, table_of
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
-from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.errors import Fault, NotConverged
 from frbcli.linear.columns import AXIAL, film_columns, point_columns
 from frbcli.linear.stability_point import (
     StabilityPoint,
@@ -265,8 +265,8 @@ def _point(
 def _check_speeds(case: Case, speeds: Sequence[float]) -> None:
     if not len(speeds):
         missing = Fault("speed", "", None, "is missing.", 'Write e.g. "25 Hz".')
-        raise InputError(case.name or "case", (missing,))
+        raise case.refused(missing)
     wrong = [speed for speed in speeds if not (math.isfinite(speed) and speed > 0.0)]
     if wrong:
         faults = [Fault("speed", f"{s:g} Hz", None, "must be greater than 0.", 'Write e.g. "25 Hz".') for s in wrong]
-        raise InputError(case.name or "case", tuple(faults))
+        raise case.refused(*faults)

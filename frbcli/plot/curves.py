@@ -16,13 +16,13 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from frbcli.analysis.order_tracking import OrderTrack
-from frbcli.analysis.signals import joined, located
+from frbcli.analysis.signals import SignalColumn, joined, located
 from frbcli.analysis.spectrum import Direction, Spectrogram
 from frbcli.arrays import Array
-from frbcli.plot.signals import MICRO, Envelope, EnvelopeColumn, curve, cut, extremes, heading, labels
+from frbcli.plot.signals import MICRO, Envelope, curve, cut, extremes, heading, labels
 from frbcli.plot.style import BLUE, COLOURS, GREY, legend_below, new_figure, styled
 from frbcli.results.container import refuse
-from frbcli.results.records import SPEED, Signal, pieces
+from frbcli.results.records import SPEED, pieces
 from frbcli.results.store import Run
 
 Over = Literal["time", "speed"]
@@ -40,21 +40,6 @@ ECCENTRICITY, TIME = "eccentricity", "time_s"
 HELD = 0.01  # share of the fastest change of the speed, below which it stays
 
 
-@dataclass(frozen=True)
-class ScaledSignal:
-    """A signal in another unit, read in pieces like a signal."""
-
-    signal: Signal
-    factor: float
-    offset: float = 0.0
-
-    def __len__(self) -> int:
-        return len(self.signal)
-
-    def __getitem__(self, part: slice, /) -> Array:
-        return np.asarray(self.factor * self.signal[part] + self.offset)
-
-
 def curves_figure(
     runs: Sequence[Run], panels: Sequence[Callable[[Axes], None]], over: Over, height: float = HEIGHT
 ) -> Figure:
@@ -70,7 +55,7 @@ def curves_figure(
 
 
 def draw_curves(
-    axes: Axes, runs: Sequence[Run], signals: Sequence[tuple[str, Sequence[EnvelopeColumn]]], over: Over, span: Span
+    axes: Axes, runs: Sequence[Run], signals: Sequence[tuple[str, Sequence[SignalColumn]]], over: Over, span: Span
 ) -> None:
     """Curves of all runs on axes of a figure, from and to the times of span in s.
 
@@ -95,7 +80,7 @@ def finish(axes: Axes, over: Over) -> None:
     axes.set_xlabel(WORDS[over])
 
 
-def _ways(run: Run, over: Over, shown: tuple[int, int], column: EnvelopeColumn) -> list[tuple[str, Array, Array]]:
+def _ways(run: Run, over: Over, shown: tuple[int, int], column: SignalColumn) -> list[tuple[str, Array, Array]]:
     """The way up and the way down of the rotor speed with their thinned curves; all of a curve over time."""
     if over == "time":
         return [("", *curve(run, column, *shown))]
@@ -256,8 +241,7 @@ def draw_cascade(
     axes.plot([right] * 2, [depth[-1], depth[-1] + CURVE_HEIGHT * span], color="black", linewidth=1.5)
     axes.annotate(f"{limits[1] - limits[0]:.3g} {unit}", (right, depth[-1] + CURVE_HEIGHT * span / 2), (-4, 0),
                   textcoords="offset points", ha="right", va="center")  # fmt: skip
-    axes.set_xlabel("frequency in Hz")
-    axes.set_ylabel(WORDS[over])
+    axes.set(xlabel="frequency in Hz", ylabel=WORDS[over])
 
 
 def _draw_frame(axes: Axes, depth: Array, shift: Array, width: float, span: float) -> None:

@@ -17,13 +17,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from frbcli.analysis.signals import SignalColumn, films, joined, located, points
+from frbcli.analysis.signals import SignalColumn, SlicedColumn, films, joined, located, points
 from frbcli.arrays import Array
 from frbcli.columns import ZERO_CELSIUS
 from frbcli.film.cavitation.table import laws, names
-from frbcli.plot.curves import HEIGHT, Over, ScaledSignal, Span, curves_figure, draw_curves
+from frbcli.plot.curves import HEIGHT, Over, Span, curves_figure, draw_curves
 from frbcli.plot.signals import MICRO, curve, cut, ends, envelope, heading, labels, motion, shell
-from frbcli.plot.style import BAND, COLOURS, GREY, draw_bands, legend_below, new_figure, styled
+from frbcli.plot.style import BAND, COLOURS, GREY, draw_bands, legend_below, new_figure, orbit_axes, styled
 from frbcli.results.columns import AXIAL_SIGNALS
 from frbcli.results.container import refuse
 from frbcli.results.records import Signal, pieces
@@ -69,8 +69,7 @@ def draw_eccentricity(
         for label, name in zip(film_labels, names, strict=True)
     ]
     draw_curves(axes, runs, curves, over, span)
-    axes.set_ylim(0.0, 1.0)
-    axes.set_ylabel("eccentricity")
+    axes.set(ylim=(0.0, 1.0), ylabel="eccentricity")
 
 
 def draw_largest(axes: Axes, run: Run, film: str, colour: str, line: Line = "-", label: str = "") -> None:
@@ -79,8 +78,7 @@ def draw_largest(axes: Axes, run: Run, film: str, colour: str, line: Line = "-",
     times, lowest, highest = envelope(run, run.signal(joined("eccentricity", film)))
     axes.fill_between(times, lowest, highest, color=colour, alpha=0.5 * BAND, linewidth=0.0)
     axes.plot(times, highest, color=colour, linestyle=line, label=label.replace("_", " "))
-    axes.set_ylim(0.0, 1.0)
-    axes.set_ylabel("largest eccentricity,\nband: down to the smallest")
+    axes.set(ylim=(0.0, 1.0), ylabel="largest eccentricity,\nband: down to the smallest")
 
 
 def _groups(run: Run) -> list[tuple[str, list[str]]]:
@@ -95,24 +93,20 @@ def _without_side(name: str) -> str:
     return "_".join(word for word in name.split("_") if word not in SIDES)
 
 
-@dataclass(frozen=True)
-class Distance:
-    """The distance of a point from the axis, um; read in pieces like a signal."""
+def _distance(x: SignalColumn, y: SignalColumn) -> SlicedColumn:
+    """The distance of a point from the axis, um."""
+    return SlicedColumn(len(x), lambda first, last: MICRO * np.hypot(x[first:last], y[first:last]))
 
-    x: SignalColumn
-    y: SignalColumn
 
-    def __len__(self) -> int:
-        return len(self.x)
-
-    def __getitem__(self, where: slice) -> Array:
-        return np.asarray(MICRO * np.hypot(self.x[where], self.y[where]))
+def _scaled(signal: SignalColumn, factor: float, offset: float) -> SlicedColumn:
+    """A signal in another unit."""
+    return SlicedColumn(len(signal), lambda first, last: factor * signal[first:last] + offset)
 
 
 def draw_distances(axes: Axes, runs: Sequence[Run]) -> None:
     """The distances of all journals and disks from the axis, for machines without films."""
     nodes = [joined(kind, name) for kind in ("journal", "disk") for name in points(runs[0].signals, kind)]
-    curves = [(node.replace("_", " "), [Distance(*motion(run, node)) for run in runs]) for node in nodes]
+    curves = [(node.replace("_", " "), [_distance(*motion(run, node)) for run in runs]) for node in nodes]
     draw_curves(axes, runs, curves, "time", (None, None))
     axes.set_ylim(bottom=0.0)
     axes.set_ylabel("distance in µm")
@@ -189,11 +183,7 @@ def draw_orbits(axes: Axes, runs: Sequence[Run], bearing: str, span_s: tuple[flo
         axes.text(0.02, 0.98, f"grey: clearance\n{words} µm", transform=axes.transAxes, va="top", color=GREY)
     axes.axhline(0.0, color=GREY, linewidth=0.5)
     axes.axvline(0.0, color=GREY, linewidth=0.5)
-    axes.set_aspect("equal")
-    axes.set_xlim(-1.12 * widest, 1.12 * widest)
-    axes.set_ylim(-1.12 * widest, 1.12 * widest)
-    axes.set_xlabel("x in µm")
-    axes.set_ylabel("y in µm")
+    orbit_axes(axes, 1.12 * widest)
 
 
 def _reach(x: Signal, y: Signal, first: int, last: int) -> float:
@@ -353,7 +343,7 @@ def draw_quantity(
             raise refuse(run.path, subject.missing, subject.remedy.format(models=models))
     curves = [
         (place.replace("_", " ") or subject.alone,
-         [ScaledSignal(run.signal(name), panel.factor, panel.offset) for run in runs])
+         [_scaled(run.signal(name), panel.factor, panel.offset) for run in runs])
         for place, name in wanted.items()
     ]  # fmt: skip
     draw_curves(axes, runs, curves, over, span)

@@ -22,7 +22,7 @@ from frbcli.analysis.signals import films, joined, points, speed_at
 from frbcli.case.run import speed_unit_of
 from frbcli.plot.motion import LAST_s
 from frbcli.plot.signals import MICRO, at_times, cut, ends, heading, motion, shell
-from frbcli.plot.style import BLUE, GREY, LEVEL_MAP, VERMILION, new_figure, refused, styled
+from frbcli.plot.style import BLUE, GREY, LEVEL_MAP, VERMILION, new_figure, orbit_axes, refused, styled
 from frbcli.results.container import refuse
 from frbcli.results.store import KeptFilm, Run, kept_film
 from frbcli.results.write import MARK, PICTURES, require_places, written
@@ -115,7 +115,7 @@ def _scene(run: Run, begin: float, end: float, frames: int) -> tuple[Figure, Cal
     lines = []
     for axes, bearing in zip(figure.subplots(1, len(bearings), squeeze=False)[0], bearings, strict=True):
         x, y = (MICRO * at_times(run, part, times) for part in motion(run, joined("journal", bearing)))
-        _prepare(axes, bearing, _radius(run, bearing), float(np.max(np.hypot(x, y))))
+        _prepare(axes, bearing, MICRO * (shell(run, bearing) or 0.0), float(np.max(np.hypot(x, y))))
         trail = axes.plot([], [], color=BLUE, linewidth=1.0)[0]
         dot = axes.plot([], [], color=BLUE, marker="o", markersize=5.0, linestyle="none")[0]
         lines.append((x, y, trail, dot))
@@ -134,21 +134,11 @@ def _scene(run: Run, begin: float, end: float, frames: int) -> tuple[Figure, Cal
     return figure, draw
 
 
-def _radius(run: Run, bearing: str) -> float:
-    """The radius of the circle around a journal in um, 0 without a film."""
-    return MICRO * (shell(run, bearing) or 0.0)
-
-
 def _prepare(axes: Axes, bearing: str, radius: float, reach: float) -> None:
     axes.set_title(bearing)
     if radius > 0.0:
         axes.add_patch(Circle((0.0, 0.0), radius, fill=False, edgecolor=GREY, linewidth=1.2))
-    widest = 1.08 * max(radius, reach)
-    axes.set_xlim(-widest, widest)
-    axes.set_ylim(-widest, widest)
-    axes.set_aspect("equal")
-    axes.set_xlabel("x in µm")
-    axes.set_ylabel("y in µm")
+    orbit_axes(axes, 1.08 * max(radius, reach))
 
 
 def film_moments_figure(
@@ -257,8 +247,7 @@ def _draw_course(axes: Axes, run: Run, kept: KeptFilm, first: int, last: int) ->
     for signal, colour in (("eccentricity", BLUE), ("oil_fraction", VERMILION)):
         drawn = at_times(run, run.signal(joined(signal, kept.name)), times)
         axes.plot(times, drawn, color=colour, label=signal.replace("_", " "))
-    axes.set_xlim(times[0], times[-1])
-    axes.set_ylim(0.0, 1.05)
+    axes.set(xlim=(times[0], times[-1]), ylim=(0.0, 1.05))
     axes.set_xlabel("time in s", fontsize=8.0)
     axes.set_ylabel("eccentricity,\noil fraction", fontsize=8.0)
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize="small")
@@ -275,9 +264,7 @@ def _draw_maps(row: Any, kept: KeptFilm, frame: int) -> tuple[list[Any], list[An
         images.append(axes.imshow(shown, cmap=LEVEL_MAP, vmin=low, vmax=high, extent=(0.0, 360.0, 0.0, 1.0),
                                   aspect="auto", origin="lower", interpolation="nearest"))  # fmt: skip
         lines.append(axes.axvline(np.degrees(kept.narrowest(frame)), color="white", linewidth=1.0))
-        axes.set_xlim(0.0, 360.0)
-        axes.set_ylim(0.0, 1.0)
-        axes.set_xticks(range(0, 361, 90))
+        axes.set(xlim=(0.0, 360.0), ylim=(0.0, 1.0), xticks=range(0, 361, 90))
     row[0].set_ylabel("z", fontsize=8.0)
     return images, lines
 

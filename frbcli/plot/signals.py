@@ -10,13 +10,13 @@ import re
 from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from dataclasses import asdict
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
 from frbcli.analysis.events import find_events
 from frbcli.analysis.order_tracking import CELLS
-from frbcli.analysis.signals import bearing_clearance, films, in_film, located, point_of, points, speed_at
+from frbcli.analysis.signals import SignalColumn, bearing_clearance, films, in_film, located, point_of, points, speed_at
 from frbcli.arrays import Array
 from frbcli.case.reading.settings import TomlFault, parse
 from frbcli.case.reading.tables import table
@@ -34,12 +34,6 @@ NO_CLEARANCE = "Run the case again; of a measurement give --clearance, or --line
 RAMP_s = 5e-3  # before and after an event, in which its ramp is taken
 MOST_SEARCHED = 2_000_000  # samples in which events are sought
 _MODEL = re.compile("[a-z-]{1,40}")
-
-
-class EnvelopeColumn(Protocol):
-    """Values (n,) of which slices (m,) can be had: a signal, or what is computed of several."""
-
-    def __getitem__(self, part: slice, /) -> Array: ...
 
 
 class Envelope:
@@ -73,7 +67,7 @@ class Envelope:
         return place, values
 
 
-def curve(run: Run, column: EnvelopeColumn, first: int = 0, last: int | None = None) -> tuple[Array, Array]:
+def curve(run: Run, column: SignalColumn, first: int = 0, last: int | None = None) -> tuple[Array, Array]:
     """Times and values (k,) that draw the samples of a column from `first` to before `last`, by default all."""
     last = len(run) if last is None else last
     line = Envelope(last - first)
@@ -82,7 +76,7 @@ def curve(run: Run, column: EnvelopeColumn, first: int = 0, last: int | None = N
     return line.points()
 
 
-def envelope(run: Run, column: EnvelopeColumn) -> tuple[Array, Array, Array]:
+def envelope(run: Run, column: SignalColumn) -> tuple[Array, Array, Array]:
     """Times (k,), and the lowest and the highest value (k,) of spans that begin there."""
     times, values = curve(run, column)
     if len(times) < SHORTEST * SPANS:
@@ -91,7 +85,7 @@ def envelope(run: Run, column: EnvelopeColumn) -> tuple[Array, Array, Array]:
     return times[first], np.minimum.reduceat(values, first), np.maximum.reduceat(values, first)
 
 
-def extremes(column: EnvelopeColumn, first: int, last: int) -> tuple[float, float]:
+def extremes(column: SignalColumn, first: int, last: int) -> tuple[float, float]:
     """The lowest and the highest value of some samples; what is no number does not count. (inf, -inf) without any."""
     lowest, highest = np.inf, -np.inf
     for start, stop in pieces(first, last):
@@ -101,7 +95,7 @@ def extremes(column: EnvelopeColumn, first: int, last: int) -> tuple[float, floa
     return lowest, highest
 
 
-def at_times(run: Run, column: EnvelopeColumn, times: Array) -> Array:
+def at_times(run: Run, column: SignalColumn, times: Array) -> Array:
     """The values (k,) of a column at ascending times (k,) in s, on the line between the samples."""
     values = np.empty(len(times))
     for start, stop in pieces(0, len(run)):

@@ -284,8 +284,7 @@ def _draw_curve(axes: Axes, sweep: Sweep, over: _Scale) -> None:
         bottom = np.full(np.count_nonzero(missing), np.nanmin(speed))
         axes.plot(at[missing], bottom, "x", color=VERMILION, label="none found")
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    axes.set_xlabel(over.label)
-    axes.set_ylabel(f"{KINDS[sweep.method][0]} in Hz")
+    axes.set(xlabel=over.label, ylabel=f"{KINDS[sweep.method][0]} in Hz")
 
 
 def _draw_map(figure: Figure, axes: Axes, sweep: Sweep, across: _Scale, up: _Scale) -> None:
@@ -307,8 +306,7 @@ def _draw_map(figure: Figure, axes: Axes, sweep: Sweep, across: _Scale, up: _Sca
     for scale, place in ((across, axes.set_xticks), (up, axes.set_yticks)):
         every = math.ceil(len(scale.texts) / MOST_TICKS)
         place(np.arange(len(scale.texts))[::every], scale.ticks[::every])
-    axes.set_xlabel(across.label)
-    axes.set_ylabel(up.label)
+    axes.set(xlabel=across.label, ylabel=up.label)
 
 
 def _scales(sweep: Sweep) -> list[_Scale]:
@@ -363,9 +361,7 @@ def scatter_figure(title: str, scatter: Scatter) -> Figure:
         text = f"{100.0 * scatter.share:.1f} % below {scatter.below_Hz:.4g} Hz\n({low:.1f} to {high:.1f} %)"
         axes.annotate(text, (scatter.below_Hz, 0.5), xycoords=("data", "axes fraction"), ha="right", va="center",
                       xytext=(-6, 0), textcoords="offset points")  # fmt: skip
-        axes.set_ylim(0.0, 100.0)
-        axes.set_xlabel("rotor speed in Hz")
-        axes.set_ylabel("machines that whirl in %")
+        axes.set(ylim=(0.0, 100.0), xlabel="rotor speed in Hz", ylabel="machines that whirl in %")
     return figure
 
 
@@ -418,8 +414,7 @@ def accuracy_figure(ladder: AccuracyLadder) -> Figure:
         axes.annotate("reference uncertainty", (1.0, change), xycoords=("axes fraction", "data"),
                       xytext=(-4, -3), textcoords="offset points", ha="right", va="top", fontsize=7.5,
                       color=GREY)  # fmt: skip
-        axes.set_xlabel("CPU time in s, with the tabulation of the films")
-        axes.set_ylabel("largest error of the eccentricity")
+        axes.set(xlabel="CPU time in s, with the tabulation of the films", ylabel="largest error of the eccentricity")
         axes.grid(which="minor", visible=False)
         legend_below(figure, axes)
     return figure

@@ -186,6 +186,12 @@ def panel_width_pt(figure: Figure) -> float:
     return float(POINTS * (figure.get_figwidth() - (left + right) / figure.dpi - 2.0 * pad))
 
 
+def orbit_axes(axes: Axes, reach: float, x: float = 0.0, y: float = 0.0) -> None:
+    """Equal axes of an orbit in um, to all sides as far as `reach` from a point."""
+    axes.set(xlim=(x - reach, x + reach), ylim=(y - reach, y + reach), aspect="equal")
+    axes.set(xlabel="x in µm", ylabel="y in µm")
+
+
 def draw_bands(axes: Axes, half: float | None) -> None:
     """A band about each curve of a panel: its uncertainty in the unit of the panel, None for none."""
     if half is None or not half > 0.0:

@@ -10,7 +10,6 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -21,7 +20,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 from scipy.signal import resample_poly
 
-from frbcli.analysis.signals import films, joined, located, points, speed_at
+from frbcli.analysis.signals import SlicedColumn, films, joined, located, points, speed_at
 from frbcli.analysis.spectrum import Spectrogram
 from frbcli.analysis.subsynchronous import whirl_names
 from frbcli.arrays import Array
@@ -59,6 +58,7 @@ from frbcli.plot.style import (
     legend_beside,
     mark_times,
     new_figure,
+    orbit_axes,
     set_title,
     styled,
 )
@@ -230,11 +230,7 @@ def draw_orbit_until(axes: Axes, run: Run, time_s: float, signal: str = "journal
     extent = 0.5 * max(float(np.ptp(x)), float(np.ptp(y)))
     if 0.0 < extent < ENLARGED * reach:
         middle, reach = np.array([np.min(x) + 0.5 * np.ptp(x), np.min(y) + 0.5 * np.ptp(y)]), 1.15 * extent
-    axes.set_xlim(middle[0] - 1.08 * reach, middle[0] + 1.08 * reach)
-    axes.set_ylim(middle[1] - 1.08 * reach, middle[1] + 1.08 * reach)
-    axes.set_aspect("equal")
-    axes.set_xlabel("x in µm")
-    axes.set_ylabel("y in µm")
+    orbit_axes(axes, 1.08 * reach, *middle)
 
 
 def between(part: Signal, first: int, last: int, times: int) -> Values:
@@ -267,8 +263,7 @@ def draw_spectrum_at(axes: Axes, run: Run, time_s: float, spectra: Spectrogram, 
             axes.annotate(name, (at, 1.0), xycoords=axes.get_xaxis_transform(), xytext=(2, -2 - lower),
                           textcoords="offset points", va="top", fontsize=8.0, color=GREY, bbox=CLEAR)  # fmt: skip
             last = at
-    axes.set_xlabel("frequency in Hz")
-    axes.set_ylabel("amplitude in µm")
+    axes.set(xlabel="frequency in Hz", ylabel="amplitude in µm")
 
 
 def times_of_speeds(run: Run, speeds_Hz: Sequence[float]) -> list[float]:
@@ -305,7 +300,7 @@ def ring_speed_figure(
         if not _turning(run):
             raise refuse(run.path, "has no ring that turns.", "Draw a run of a case with floating rings.")
     names = _turning(runs[0])
-    curves = [(name, [_Ratio.of(run, name) for run in runs]) for name in names]
+    curves = [(name, [_ratio(run, name) for run in runs]) for name in names]
     concentric = _concentric(runs[0]) if len({run.case_text for run in runs}) == 1 else {}
     highest = max(
         extremes(ratio, int(START * len(run)), len(run))[1]
@@ -316,8 +311,7 @@ def ring_speed_figure(
     def panel(axes: Axes) -> None:
         draw_curves(axes, runs, curves, over, (from_time, to_time))
         _draw_concentric(axes, concentric)
-        axes.set_ylim(0.0, ROOM * max(highest, *concentric.values(), 1e-3))
-        axes.set_ylabel("ring speed over rotor speed")
+        axes.set(ylim=(0.0, ROOM * max(highest, *concentric.values(), 1e-3)), ylabel="ring speed over rotor speed")
 
     return curves_figure(runs, [panel], over)
 
@@ -339,24 +333,17 @@ def _turning(run: Run) -> list[str]:
     return [name for name in points(run.signals, "ring") if joined("ring_speed", name, "Hz") in run.signals]
 
 
-@dataclass(frozen=True)
-class _Ratio:
-    """Speed of a ring over the rotor speed, NaN where the rotor hardly turns: below `least` Hz."""
+def _ratio(run: Run, name: str) -> SlicedColumn:
+    """Speed of a ring over the rotor speed, NaN where the rotor hardly turns."""
+    ring, rotor = run.signal(joined("ring_speed", name, "Hz")), run.signal(SPEED)
+    least = SLOWEST * max(map(abs, extremes(rotor, 0, len(run))))
 
-    ring: Signal
-    rotor: Signal
-    least: float
-
-    @classmethod
-    def of(cls, run: Run, name: str) -> _Ratio:
-        rotor = run.signal(SPEED)
-        fastest = max(map(abs, extremes(rotor, 0, len(run))))
-        return cls(run.signal(joined("ring_speed", name, "Hz")), rotor, SLOWEST * fastest)
-
-    def __getitem__(self, part: slice) -> Array:
-        speed = np.abs(self.rotor[part])
+    def part(first: int, last: int) -> Array:
+        speed = np.abs(rotor[first:last])
         ratio: Array = np.full(len(speed), np.nan)
-        return np.divide(self.ring[part], speed, out=ratio, where=speed > self.least)
+        return np.divide(ring[first:last], speed, out=ratio, where=speed > least)
+
+    return SlicedColumn(len(run), part)
 
 
 def _concentric(run: Run) -> dict[str, float]:

@@ -21,7 +21,7 @@ from matplotlib.text import Annotation
 from matplotlib.ticker import LogLocator, MaxNLocator, ScalarFormatter
 from numpy.typing import NDArray
 
-from frbcli.analysis.signals import RingSpeed, joined, located, points, samples
+from frbcli.analysis.signals import joined, located, points, ring_speed_of, samples
 from frbcli.analysis.spectrum import FROM_SPEED, PADDING, Direction, Spectrogram, window_length
 from frbcli.analysis.spectrum import waterfall as spectra
 from frbcli.analysis.subsynchronous import with_whirl_names
@@ -262,7 +262,7 @@ def _apart(run: Run, signal: str) -> float | None:
     if bearing not in points(run.signals, "ring"):
         return None
     places = np.unique(np.linspace(0, len(run) - 1, COLUMNS).round().astype(np.int64))
-    speed, ring = samples(run.signal(SPEED), places), samples(RingSpeed(run, bearing), places)
+    speed, ring = samples(run.signal(SPEED), places), samples(ring_speed_of(run, bearing), places)
     size = np.abs(speed)  # a rotor may turn the other way round all the time
     slow = np.flatnonzero(size >= FROM_SPEED * np.max(size))[0]
     frequencies = speed[slow], 0.5 * (speed[slow] + ring[slow]), 0.5 * ring[slow]
@@ -310,8 +310,7 @@ def draw_levels(
     for number, text in enumerate(texts):  # of lines that are close the first one is named
         text.set_visible(not any(boxes[number].overlaps(box) for box in boxes[:number]))
     axes.grid(False)
-    axes.set_xlabel(WORDS[over])
-    axes.set_ylabel("frequency in Hz")
+    axes.set(xlabel=WORDS[over], ylabel="frequency in Hz")
     return mesh
 
 

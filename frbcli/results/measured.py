@@ -98,25 +98,26 @@ def _leaves_5(path: Path) -> Iterator[Leaf]:
 def _inside_5(name: str, value: object, deeper: int) -> Iterator[Leaf]:
     from scipy.io.matlab import MatlabFunction, MatlabOpaque
 
-    if isinstance(value, MatlabFunction | MatlabOpaque):
-        yield name, OBJECT
-    elif not isinstance(value, np.ndarray):
-        yield name, "is sparse" if hasattr(value, "todense") else "holds no numbers"
-    elif deeper == 0:
-        yield name, "is nested too deeply"
-    elif value.dtype.names:
-        elements = value.ravel(order="F")
-        for number, element in enumerate(elements, start=1):
-            own = name if len(elements) == 1 else f"{name}.{number}"
-            for field in value.dtype.names:
-                yield from _inside_5(f"{own}.{field}", element[field], deeper - 1)
-    elif value.dtype == object:
-        for number, element in enumerate(value.ravel(order="F"), start=1):
-            yield from _inside_5(f"{name}.{number}", element, deeper - 1)
-    elif _is_number(value.dtype):
-        yield name, value
-    elif value.size:
-        yield name, "holds text"
+    match value:
+        case MatlabFunction() | MatlabOpaque():
+            yield name, OBJECT
+        case np.ndarray() if deeper == 0:
+            yield name, "is nested too deeply"
+        case np.ndarray(dtype=np.dtype(names=(_, *_) as fields)):
+            elements = value.ravel(order="F")
+            for number, element in enumerate(elements, start=1):
+                own = name if len(elements) == 1 else f"{name}.{number}"
+                for field in fields:
+                    yield from _inside_5(f"{own}.{field}", element[field], deeper - 1)
+        case np.ndarray() if value.dtype == object:
+            for number, element in enumerate(value.ravel(order="F"), start=1):
+                yield from _inside_5(f"{name}.{number}", element, deeper - 1)
+        case np.ndarray() if _is_number(value.dtype):
+            yield name, value
+        case np.ndarray():
+            yield from [(name, "holds text")] if value.size else []
+        case _:
+            yield name, "is sparse" if hasattr(value, "todense") else "holds no numbers"
 
 
 def _leaves_7_3(path: Path) -> Iterator[Leaf]:

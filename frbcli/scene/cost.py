@@ -20,7 +20,6 @@ from typing import Literal
 
 import numpy as np
 
-from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.elements.ball import BallBearingElement
 from frbcli.film.cavitation.table import law_named
@@ -127,7 +126,7 @@ def signal_count(case: Case) -> int:
 def rotor_size(case: Case) -> int:
     """Degrees of freedom of the rotor with its rings and elements, as reduced."""
     elements = sum(body.size for body in element_parts(case).bodies)
-    alone = sum(isinstance(given, FloatingRingBearing) for given in case.given_bearings)
+    alone = sum(given.kind == "floating-ring" for given in case.given_bearings)
     tilts = 2 * alone if case.film.tilt == "follows" else 0
     return shaft_of(case).freedoms + 2 * len(rings(case)) + tilts + elements + len(turning_rings(case))
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from frbcli.case.model import altered
 from frbcli.case.run import MACRO_STEP, STEPS_PER_REVOLUTION
 from frbcli.case.schema import Case
-from frbcli.errors import Fault, InputError
+from frbcli.errors import Fault
 from frbcli.scene.changes import step_times
 from frbcli.scene.cost import DAY_s, ExpectedCost, before_s, clock, rotor_size
 from frbcli.scene.planning.film_choice import Plan
@@ -25,7 +25,7 @@ def require_affordable(case: Case, plan: Plan, cost: ExpectedCost) -> None:
     """Raises InputError naming what makes a run of this cost too long or too large."""
     faults = tuple(cost_faults(case, plan, cost))
     if faults:
-        raise InputError(case.name or "case", faults)
+        raise case.refused(*faults)
 
 
 def cost_faults(case: Case, plan: Plan, cost: ExpectedCost) -> Iterator[Fault]:

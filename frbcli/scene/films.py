@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing, SingleFilmBearing
+from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.elements import Element
 from frbcli.case.film import FilmGeometry, FilmModel, RingFilm
 from frbcli.case.model import altered
@@ -47,7 +47,7 @@ def tilt_of(case: Case) -> Pair:
     """Tilt of the journal against the shell in rad."""
     motion, bearing = case.motion, case.bearings[0]
     journal = NONE if motion is None or motion.tilt is None else motion.tilt
-    shell = bearing.misalignment if isinstance(bearing, SingleFilmBearing) else None
+    shell = bearing.misalignment if bearing.kind == "single-film" else None
     return journal if shell is None else (journal[0] - shell[0], journal[1] - shell[1])
 
 
@@ -139,7 +139,7 @@ def coupled(bearing: FloatingRingBearing) -> bool:
 def coupled_rings(case: Case) -> Iterator[tuple[str, FloatingRingBearing]]:
     """The rings whose channels couple their films, each with the key that says so."""
     for index, bearing in enumerate(case.bearings):
-        if isinstance(bearing, FloatingRingBearing) and coupled(bearing):
+        if bearing.kind == "floating-ring" and coupled(bearing):
             yield f"{bearing_key(case, index)}.channels", bearing
 
 
@@ -183,7 +183,7 @@ def coupled_channels(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[Channel
     channels: list[Channel] = []
     film = 0
     for bearing in case.bearings:
-        if not isinstance(bearing, FloatingRingBearing):
+        if bearing.kind != "floating-ring":
             film += 1
             continue
         supply = bearing.inner.supply.channels
@@ -318,7 +318,7 @@ def film_places(case: Case) -> tuple[FilmPlace, ...]:
     order, and behind them the dampers."""
     places, spins = [], iter(_spins(case))
     for bearing in case.bearings:
-        if isinstance(bearing, SingleFilmBearing):
+        if bearing.kind == "single-film":
             body, tilt = _opening_body(bearing, ROTOR, HOUSING), bearing.misalignment or (0.0, 0.0)
             places.append(FilmPlace(bearing, ROTOR, HOUSING, body, bearing.name, None, tilt))
         else:
@@ -345,7 +345,7 @@ def _opening_body(film: FilmGeometry, inside: int, outside: int) -> int:
 
 def rings(case: Case) -> tuple[FloatingRingBearing, ...]:
     """The bearings with floating rings."""
-    return tuple(bearing for bearing in case.bearings if isinstance(bearing, FloatingRingBearing))
+    return tuple(bearing for bearing in case.bearings if bearing.kind == "floating-ring")
 
 
 def turning_rings(case: Case) -> tuple[tuple[FloatingRingBearing, ...], ...]:
@@ -356,7 +356,7 @@ def turning_rings(case: Case) -> tuple[tuple[FloatingRingBearing, ...], ...]:
 def _around_rings(case: Case) -> Iterator[tuple[FloatingRingBearing, ...]]:
     """The bearings around each ring."""
     for given in case.given_bearings:
-        if around := tuple(part for part in given.parts if isinstance(part, FloatingRingBearing)):
+        if around := tuple(part for part in given.parts if part.kind == "floating-ring"):
             yield around
 
 
@@ -372,7 +372,7 @@ def _spins(case: Case) -> Iterator[int]:
 def turning_cartridges(case: Case) -> tuple[str, ...]:
     """The keys of the cartridges that turn."""
     keyed = zip(case.given_keys, case.given_bearings, strict=True)
-    return tuple(key for key, each in keyed if isinstance(each, CartridgeBearing) and each.ring.spin == "free")
+    return tuple(key for key, each in keyed if each.kind == "cartridge" and each.ring.spin == "free")
 
 
 def full_films(case: Case) -> Case:
@@ -431,7 +431,7 @@ def centrifugal_pressures(case: Case, sections: Sequence[Section]) -> tuple[floa
     around = [bearing for bearing in case.bearings for _ in bearing.films]
     centrifugal = [0.0] * len(sections)
     for number, (place, bearing) in enumerate(zip(bearing_films(case), around, strict=True)):
-        if isinstance(bearing, FloatingRingBearing) and 0 <= place.outside == place.grid_body and not coupled(bearing):
+        if bearing.kind == "floating-ring" and 0 <= place.outside == place.grid_body and not coupled(bearing):
             pressure = centrifugal_pressure(case, bearing)
             centrifugal[number] = 0.5 * pressure / sections[number].pressure_scale
     return tuple(centrifugal)

@@ -497,4 +497,4 @@ def _check(case: Case, theories: Sequence[str], couplings: Sequence[str]) -> Non
         if name not in known
     ]
     if faults:
-        raise InputError(case.name or "case", tuple(faults))
+        raise case.refused(*faults)

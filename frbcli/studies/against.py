@@ -137,7 +137,8 @@ def against_measured(run: Run, measurement: Run, signal: str = "journal") -> Aga
     mine = np.abs(run[SPEED])
     speeds = speeds[(speeds >= mine.min()) & (speeds <= mine.max())]
     if len(speeds) < FEWEST:
-        own, other = (_range(each) for each in (run, measurement))
+        ranges = (np.abs(each[SPEED]) for each in (run, measurement))
+        own, other = (f"{speed.min():.4g} to {speed.max():.4g} Hz" for speed in ranges)
         problem = f"goes from {other}, and the run from {own}."
         raise input_error("comparison", "--measured", "", problem, "Compare runs of the same speeds.")
     computed, measured = ridges(run, speeds, clearance, signal), ridges(measurement, speeds, clearance)
@@ -145,11 +146,6 @@ def against_measured(run: Run, measurement: Run, signal: str = "journal") -> Aga
     there = [event | {"point": point} for event in events_at(measurement, "journal", clearance)]
     here = events_at(run, signal, clearance)
     return AgainstMeasured(run, measurement, computed, measured, clearance, point, here, there)
-
-
-def _range(run: Run) -> str:
-    speed = np.abs(run[SPEED])
-    return f"{speed.min():.4g} to {speed.max():.4g} Hz"
 
 
 def _rms(values: Array) -> float:

@@ -64,17 +64,13 @@ def _rough(value: float) -> str:
     return f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e+")
 
 
-def _coupling(name: str) -> str:
-    return name.replace("-semi", "-\nsemi")
-
-
 # Of a VariantResult
 VARIANT = (
     Column("name", "", "", attrgetter("variant.name"), shown=(Shown("films", table=MODELS),), key="", flat=False),
     Column("cavitation", "", "cavitation model", attrgetter("variant.cavitation")),
     Column("theory", "", "theory of the films", attrgetter("variant.theory")),
     Column("coupling", "", "coupling of rotor and films", attrgetter("variant.coupled"),
-           shown=(Shown("coupling", _coupling, table=COUPLING_TABLE),)),
+           shown=(Shown("coupling", lambda name: name.replace("-semi", "-\nsemi"), table=COUPLING_TABLE),)),
     Column("status", "", "how the run ended", attrgetter("run.status")),
     Column("t_end", "s", "when it ended", attrgetter("run.t_end_s"), key=""),
     Column("events", "", "events of the run", attrgetter("run.events"), flat=False),
@@ -295,17 +291,13 @@ def compare(
 def _ended(tasks: Sequence[RunTask], report: Report) -> Iterator[tuple[int, Ended]]:
     """How each run has ended. Those that take long run side by side, the longest first, if other processes know their
     models: laws that Python has added are known to this one alone."""
-    costs = {task.number: _cost_s(task) for task in tasks}
+    planned = ((task, make_plan(task.case), PROFILES[task.command](task.case)) for task in tasks)
+    costs = {task.number: cost_of_run(task.case, plan, profile).total_s for task, plan, profile in planned}
     shipped = all(law_named(law).__module__.startswith("frbcli.") for task in tasks for law in task.case.cavitations)
     own = not shipped or any(spring.law for task in tasks for spring in task.case.springs)
     if own or joblib.cpu_count() == 1 or sum(costs.values()) - max(costs.values()) < WORTH_A_PROCESS_s:
         return in_turn(tasks, report)
     return side_by_side(sorted(tasks, key=lambda task: -costs[task.number]), report)
-
-
-def _cost_s(task: RunTask) -> float:
-    """Expected CPU time."""
-    return cost_of_run(task.case, make_plan(task.case), PROFILES[task.command](task.case)).total_s
 
 
 def _planned(case: Case, variant: Variant) -> Case:
@@ -343,7 +335,7 @@ def make_variants(
     faults = [*_unknown("--cavitation", cavitations, names()), *_unknown("--theory", theories, THEORIES)]
     faults += [*_unknown("--coupling", couplings, COUPLINGS), *_unknown("--thermal", thermals, THERMALS)]
     if faults:
-        raise InputError(case.name or "case", tuple(faults))
+        raise case.refused(*faults)
     plan = make_plan(case)
     own = Variant(plan.theory, plan.cavitation, case.film.coupling)
     if not (cavitations or theories or couplings or thermals):

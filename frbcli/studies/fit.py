@@ -219,13 +219,11 @@ class _Trial:
             behind[number] = max(x[number] - STEP, limits[0, number])
             change = self.residuals(ahead, scatter, limits) - self.residuals(behind, scatter, limits)
             if not change.any() and np.abs(self.residuals(x, scatter, limits)).max() < LARGE:
-                raise self._without_effect(self._numbers[number].key)
+                problem = "changes nothing that is compared with the measurement: it cannot be found from it."
+                key = self._numbers[number].key
+                raise input_error(self._case.name, "--vary", key, problem, "Leave it out.")
             columns.append(change / (ahead[number] - behind[number]))
         return np.stack(columns, axis=1)
-
-    def _without_effect(self, key: str) -> InputError:
-        problem = "changes nothing that is compared with the measurement: it cannot be found from it."
-        return input_error(self._case.name, "--vary", key, problem, "Leave it out.")
 
 
 def _compared(measured: Ridges) -> tuple[Truths, Truths]:

@@ -139,7 +139,8 @@ def sweep(
     """
     workers = workers or Workers()
     settings = grid(points) if isinstance(points, Mapping) else checked(points)
-    _check_method(method)
+    if method not in METHODS:
+        raise refused("method", method, "is not known.", f"There are: {', '.join(METHODS)}.")
     check_workers(workers)
     cases = _cases(case, settings)
     _check_laws(cases, workers)
@@ -168,11 +169,6 @@ def _cases(case: Case, settings: Sequence[Settings]) -> list[Case | InputError]:
     if isinstance(cases[0], InputError) and not any(isinstance(each, Case) for each in cases):
         raise cases[0]
     return cases
-
-
-def _check_method(method: str) -> None:
-    if method not in METHODS:
-        raise refused("method", method, "is not known.", f"There are: {', '.join(METHODS)}.")
 
 
 def _tasks(

@@ -12,7 +12,7 @@ from synthetic_run import as_run
 from frbcli.analysis import signals
 from frbcli.analysis.events import find_events
 from frbcli.analysis.order_tracking import order_track, order_tracks
-from frbcli.analysis.signals import SignalOf
+from frbcli.analysis.signals import signal_of
 from frbcli.analysis.spectrum import waterfall
 from frbcli.errors import InputError
 from frbcli.results.store import Run
@@ -130,7 +130,7 @@ class Endless:
 def test_memory_does_not_grow_with_the_samples(look: str) -> None:
     """Each signal has 16 MB."""
     run = Endless()
-    columns = [SignalOf(run, name) for name in ("time_s", "journal_x_m", "journal_y_m", "speed_Hz")]
+    columns = [signal_of(run, name) for name in ("time_s", "journal_x_m", "journal_y_m", "speed_Hz")]
     tracemalloc.start()
     try:
         if look == "orders":

@@ -46,29 +46,30 @@ def _values(prefix: str, model: Model, written: Any) -> Iterator[Value]:
 
 def _one(key: str, content: Any, field: FieldInfo, written: Any) -> Iterator[Value]:
     """written: the same value in the text of the case, None where it is not there."""
-    if content is None or content == () or content == "":
-        return
-    if isinstance(content, Model):
-        yield from _values(f"{key}.", content, written)
-    elif isinstance(content, tuple) and isinstance(written, dict) and hasattr(content[0], "place"):
-        yield from _by_place(key, content, written)
-    elif isinstance(content, tuple):
-        if len(content) > MOST_LISTED and isinstance(content[0], float):
-            yield Value(key, len(content), "", f"{len(content)} values")
+    in_table = isinstance(written, dict)
+    match content:
+        case None | () | "":
             return
-        both = isinstance(written, dict) and len(content) > 1  # one table for both ends of a cartridge
-        single = both or (key in ("bearing", "base") and len(content) == 1)
-        each = written if isinstance(written, list) else [written] * len(content)
-        for index, (item, its_text) in enumerate(zip(content[:1] if both else content, each, strict=not both)):
-            yield from _one(key if single else f"{key}.{index}", item, field, its_text)
-    elif isinstance(content, float):
-        unit = unit_of(field) or NUMBER
-        si = "" if unit == NUMBER else readable(unit)
-        per_minute = unit == SPEED and is_per_minute(written)
-        shown = f"{PER_MINUTE * content:.6g} rpm" if per_minute else display(content, unit)
-        yield Value(key, content, si, shown, bool(si) and isinstance(written, int | float))
-    else:
-        yield Value(key, content, "", str(content))
+        case Model():
+            yield from _values(f"{key}.", content, written)
+        case (first, *_) if in_table and hasattr(first, "place"):
+            yield from _by_place(key, content, written)
+        case (float(), *_) if len(content) > MOST_LISTED:
+            yield Value(key, len(content), "", f"{len(content)} values")
+        case tuple():
+            both = in_table and len(content) > 1  # one table for both ends of a cartridge
+            single = both or (key in ("bearing", "base") and len(content) == 1)
+            each = written if isinstance(written, list) else [written] * len(content)
+            for index, (item, its_text) in enumerate(zip(content[:1] if both else content, each, strict=not both)):
+                yield from _one(key if single else f"{key}.{index}", item, field, its_text)
+        case float():
+            unit = unit_of(field) or NUMBER
+            si = "" if unit == NUMBER else readable(unit)
+            per_minute = unit == SPEED and is_per_minute(written)
+            shown = f"{PER_MINUTE * content:.6g} rpm" if per_minute else display(content, unit)
+            yield Value(key, content, si, shown, bool(si) and isinstance(written, int | float))
+        case _:
+            yield Value(key, content, "", str(content))
 
 
 def _by_place(key: str, items: tuple[Any, ...], written: dict[str, Any]) -> Iterator[Value]:

@@ -119,13 +119,14 @@ def with_settings(case: Case, settings: Iterable[str | Mapping[str, object]]) ->
     """As Case.with_settings, which is the way to call it."""
     applied: list[_Set] = []
     for given in settings:
-        if isinstance(given, str):
-            applied.append(functools.partial(with_setting, setting=given))
-        elif isinstance(given, Mapping):
-            applied += [functools.partial(_with_value, key=key, value=value) for key, value in given.items()]
-        else:
-            problem, remedy = "is no setting.", 'Write "key = value" or {"key": value}.'
-            raise InputError(case.name or "case", (Fault("settings", str(type(given)), None, problem, remedy),))
+        match given:
+            case str():
+                applied.append(functools.partial(with_setting, setting=given))
+            case Mapping():
+                applied += [functools.partial(_with_value, key=key, value=value) for key, value in given.items()]
+            case _:
+                problem, remedy = "is no setting.", 'Write "key = value" or {"key": value}.'
+                raise case.refused(Fault("settings", str(type(given)), None, problem, remedy))
     data, overridden, faults = _apply(parse(case.source_text), applied)
     changed, data, flaws = _checked(data, case.name or "case", ".")
     faults += _located(flaws, data, overridden, "")
@@ -215,12 +216,13 @@ def _plain(value: Any, path: KeyPath = ()) -> Any:
     """`value` as a file would give it: tables, lists, text and numbers. Raises TomlFault."""
     if len(path) > DEEPEST:
         raise TomlFault(Fault(_dotted(path[:3]), "", None, "is nested too deeply.", "Write it as in a case file."))
-    if isinstance(value, Model):
-        return as_tables(value)
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item, (*path, str(key))) for key, item in value.items() if item is not None}
-    if isinstance(value, list | tuple):
-        return [_plain(item, (*path, number)) for number, item in enumerate(value)]
+    match value:
+        case Model():
+            return as_tables(value)
+        case Mapping():
+            return {str(key): _plain(item, (*path, str(key))) for key, item in value.items() if item is not None}
+        case list() | tuple():
+            return [_plain(item, (*path, number)) for number, item in enumerate(value)]
     return value.tolist() if hasattr(value, "tolist") else value  # numbers and arrays of numpy
 
 
@@ -316,13 +318,17 @@ def _dotted(path: KeyPath) -> str:
 
 def _shown(data: Any, path: KeyPath) -> str:
     """The value at `path` as text for a fault; nothing for what is absent, a table or a list."""
-    value = at(data, path)
-    if value is None or isinstance(value, dict | list):
-        return ""
-    if isinstance(value, int) and value.bit_length() > LARGEST_SHOWN:
-        return ""
-    shown = f'"{value}"' if isinstance(value, str) else str(value).lower() if isinstance(value, bool) else str(value)
-    return _printable(shown)
+    match at(data, path):
+        case None | dict() | list():
+            return ""
+        case bool() as switch:
+            return str(switch).lower()
+        case int() as whole if whole.bit_length() > LARGEST_SHOWN:
+            return ""
+        case str() as text:
+            return _printable(f'"{text}"')
+        case value:
+            return _printable(str(value))
 
 
 def _printable(text: str) -> str:

@@ -127,14 +127,15 @@ def as_tables(model: Model) -> dict[str, Any]:
 
 def _written(value: Any, unit: str | None) -> Any:
     """A value as written in a file; None for one that no file can have."""
-    if value is None or isinstance(value, bool | str):
-        return value
-    if isinstance(value, Model):
-        return as_tables(value)
-    if isinstance(value, tuple | list):
-        return [_written(item, unit) for item in value]
-    if isinstance(value, dict):  # of names that are no keys, with their units
-        return dict(value)
+    match value:
+        case None | bool() | str():
+            return value
+        case Model():
+            return as_tables(value)
+        case tuple() | list():
+            return [_written(item, unit) for item in value]
+        case dict():  # of names that are no keys, with their units
+            return dict(value)
     if unit is None:
         return int(value)
     number = float(value)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from frbcli.errors import Fault, InputError, did_you_mean
 
@@ -109,21 +109,15 @@ class HardCase:
 def hard_cases(names: Sequence[str] = ()) -> tuple[HardCase, ...]:
     """The hard cases of these names, all of them for (). Raises InputError for unknown names."""
     entries = tomllib.loads(hard_folder().joinpath(LIST).read_text(encoding="utf-8"))["case"]
-    cases = {entry["name"]: _hard_case(entry) for entry in entries}
-    unknown = [name for name in names if name not in cases]
-    if unknown:
-        faults = (Fault("NAME", name, None, "is no hard case.", _nearest_hard(name, cases)) for name in unknown)
-        raise InputError("hard cases", tuple(faults))
+    listed = ("settings", "events", "fine")
+    cases = {
+        entry["name"]: HardCase(**entry | {key: tuple(entry[key]) for key in listed if key in entry})
+        for entry in entries
+    }
+    if unknown := [name for name in names if name not in cases]:
+        remedies = ((name, did_you_mean(name, cases, "`frb cases --hard` lists them.")) for name in unknown)
+        raise InputError("hard cases", tuple(Fault("NAME", name, None, "is no hard case.", r) for name, r in remedies))
     return tuple(cases[name] for name in names) if names else tuple(cases.values())
-
-
-def _hard_case(entry: dict[str, Any]) -> HardCase:
-    lists = {key: tuple(value) for key, value in entry.items() if isinstance(value, list)}
-    return HardCase(**(entry | lists))
-
-
-def _nearest_hard(name: str, cases: dict[str, HardCase]) -> str:
-    return did_you_mean(name, cases, "`frb cases --hard` lists them.")
 
 
 def hard_folder() -> Traversable:

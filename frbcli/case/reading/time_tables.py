@@ -235,16 +235,15 @@ def inputs_of(model: Model, key: str = "") -> Iterator[InputOverTime]:
     """The inputs over time of a case, or of a part of it under a key."""
     for name, field in type(model).model_fields.items():
         child, here = getattr(model, name), f"{key}.{field.alias or name}".lstrip(".")
-        if isinstance(child, OverTime):
-            unit = unit_of(field)
-            if unit is not None:
-                yield InputOverTime(here, child, unit)
-        elif isinstance(child, Model):
-            yield from inputs_of(child, here)
-        elif isinstance(child, tuple):
-            parts = [part for part in child if isinstance(part, Model)]
-            for number, part in enumerate(parts):
-                yield from inputs_of(part, here if len(parts) == 1 else f"{here}.{number}")
+        match child:
+            case OverTime():
+                if (unit := unit_of(field)) is not None:
+                    yield InputOverTime(here, child, unit)
+            case Model():
+                yield from inputs_of(child, here)
+            case (Model(), *_):
+                for number, part in enumerate(child):
+                    yield from inputs_of(part, here if len(child) == 1 else f"{here}.{number}")
 
 
 def with_input_files(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Breach]]:

@@ -102,8 +102,7 @@ def with_nearest_kinds(error: ValidationError, data: dict[str, Any]) -> tuple[di
         guessed.append(_path(detail["loc"], data))
         for element in guessed[-1]:
             table = table[element]
-        close = _close(str(detail["ctx"]["tag"]), _kinds(detail["loc"]))
-        table["kind"] = close or table["kind"]
+        table["kind"] = next(iter(nearest(str(detail["ctx"]["tag"]), _kinds(detail["loc"]))), table["kind"])
     return guess, guessed
 
 
@@ -146,10 +145,10 @@ def _breach(path: Path, loc: Sequence[str | int], kind: str, context: dict[str, 
         tag = str(context.get("tag", ""))
         known = KINDS_ELSEWHERE if path[:1] == ("bearing",) else {}
         elsewhere = next((words for part, words in known.items() if part in tag.lower()), "")
-        return Breach((*path, "kind"), problem, elsewhere or _one_of(tag, _kinds(loc)))
+        return Breach((*path, "kind"), problem, elsewhere or did_you_mean(tag, _kinds(loc)))
     if kind == "literal_error":
         given = str(context["input"])
-        remedy = _one_of(given, _choices(_place(loc).field))
+        remedy = did_you_mean(given, _choices(_place(loc).field))
         if path[-1] == CAVITATION[-1] and given.lower() in LAWS_ELSEWHERE:
             remedy = LAWS_ELSEWHERE[given.lower()]
         elif path == CAVITATION:
@@ -237,12 +236,3 @@ def _times(factor: float, value: object) -> str:
         return f": {display(factor * quantity(value, 'm'), 'm')}"
     except ValueFault:
         return ""
-
-
-def _one_of(name: str, choices: Sequence[str]) -> str:
-    return did_you_mean(name, choices)
-
-
-def _close(name: str, choices: Sequence[str]) -> str:
-    """The choice nearest to what was found, or nothing."""
-    return next(iter(nearest(name, choices)), "")

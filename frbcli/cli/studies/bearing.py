@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
     from frbcli.bearing_tests.kinematic import KinematicResult, KinematicTest
     from frbcli.case.schema import Case
+    from frbcli.cli.progress import Outputs
     from frbcli.linear.sheets.ball import BallSheet, BallState
     from frbcli.linear.sheets.bearing import BearingSheet
     from frbcli.linear.sheets.film_state import FilmState
@@ -84,7 +85,6 @@ def bearing(
     terminal: Terminal,
 ) -> int | None:
     """Static equilibrium, coefficients, power loss, oil flow and pressure of every film of CASE."""
-    from frbcli.errors import NotConverged
     from frbcli.linear.sheets.bearing import bearing_sheet, sommerfeld_chart
     from frbcli.linear.sheets.film_state import heat_capacity
     from frbcli.results.write import ROSS
@@ -108,20 +108,8 @@ def bearing(
         else:
             sheet = sommerfeld_chart(case, speed_Hz=speeds[0] if speeds else None, observe=shown.counting())
     _show_films(terminal, sheet, (film,) if film is not None else sheet.films, everything or film is not None)
-    _write_ross(terminal, sheet.to_pandas(), elements)
-    terminal.emit(
-        {
-            "command": "bearing",
-            "case": case.name,
-            "over": over,
-            "oil_density_kg_m3": case.oil.density,
-            "oil_heat_capacity_J_kg_K": heat_capacity(case),
-            "points": sheet.table().documents(),
-            **places.write(terminal, sheet),
-            "ross": list(elements.values()) or None,
-        }
-    )
-    return None if any(not point.problem for point in sheet.points) else NotConverged.exit_code
+    oil = {"oil_density_kg_m3": case.oil.density, "oil_heat_capacity_J_kg_K": heat_capacity(case)}
+    return _written(terminal, sheet, sheet.to_pandas(), elements, places, {"over": over, **oil})
 
 
 def _check_options(over: str, speeds: tuple[float, ...], load: float | None, ross: Path | None) -> None:
@@ -151,13 +139,20 @@ def _ross_files(case: Case, ross: Path | None) -> dict[str, Path]:
     return ross_files(ross, [place.name for place in bearing_films(case)])
 
 
-def _write_ross(terminal: Terminal, table: pd.DataFrame, elements: dict[str, Path]) -> None:
-    """table: with a column "film", of ball bearings their names."""
+def _written(
+    terminal: Terminal, sheet: BearingSheet | BallSheet, table: pd.DataFrame, elements: dict[str, Path],
+    places: Outputs, more: dict[str, Any],
+) -> int | None:  # fmt: skip
+    """Write the files of a sheet and its JSON document; the exit code. table: of the sheet, with a column "film", of
+    ball bearings their names; elements: the files for ROSS; more: of the document."""
     from frbcli.results.export import write_ross
 
     for film, path in elements.items():
         write_ross(table[table["film"] == film], path, forced())
         terminal.result(f"ROSS: {path}")
+    document = {"command": "bearing", "case": sheet.case.name, **more, "points": sheet.table().documents()}
+    terminal.emit({**document, **places.write(terminal, sheet), "ross": list(elements.values()) or None})
+    return None if any(not point.problem for point in sheet.points) else NotConverged.exit_code
 
 
 def _show_problems(terminal: Terminal, points: Sequence[FilmState] | Sequence[BallState]) -> None:
@@ -247,17 +242,7 @@ def ball_sheet(
     with display(terminal) as shown:
         sheet = ball_bearing_sheet(case, speeds or None, loads, shown.counting())
     _show_balls(terminal, sheet)
-    _write_ross(terminal, sheet.to_pandas().rename(columns={"bearing": "film"}), elements)
-    terminal.emit(
-        {
-            "command": "bearing",
-            "case": case.name,
-            "points": sheet.table().documents(),
-            **places.write(terminal, sheet),
-            "ross": list(elements.values()) or None,
-        }
-    )
-    return None if any(not point.problem for point in sheet.points) else NotConverged.exit_code
+    return _written(terminal, sheet, sheet.to_pandas().rename(columns={"bearing": "film"}), elements, places, {})
 
 
 def _show_balls(terminal: Terminal, sheet: BallSheet) -> None:

@@ -25,7 +25,7 @@ from frbcli.columns import Table, Tabular, table_of
 from frbcli.elements.ball import BallBearing, BallBearingElement, Balls, RestingRings, at_displacement
 from frbcli.elements.ball_force import BallNumbers, ball_bearing_force
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
-from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.errors import Fault, NotConverged
 from frbcli.linear.columns import BALL_SHEET
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import FILMS
@@ -127,12 +127,12 @@ def ball_bearing_sheet(
     elements = list(BallBearingElement.of(case))
     if not elements:
         problem = "is missing: the case has no ball bearing."
-        raise InputError(case.name or "case", (Fault("bearing", "", None, problem, 'Add one of kind = "ball".'),))
+        raise case.refused(Fault("bearing", "", None, problem, 'Add one of kind = "ball".'))
     for element in elements:
         if element.uneven:
             problem = "loads one row of an opposed pair: its sheet would be of two different rows."
             remedy = "Remove it for the sheet, and give each row's preload instead."
-            raise InputError(case.name or "case", (Fault(f"{element.key}.locating", "", None, problem, remedy),))
+            raise case.refused(Fault(f"{element.key}.locating", "", None, problem, remedy))
     speeds = sorted(_speeds(case) if speeds_Hz is None else speeds_Hz)
     carried = None if loads else _Carried(case)
     points: list[BallState] = []
@@ -153,7 +153,7 @@ class _Carried:
     def __init__(self, case: Case) -> None:
         if case.given_rotor is None:
             problem = "is missing: the load on the bearing is not known."
-            raise InputError(case.name or "case", (Fault("--load", "", None, problem, 'Give e.g. --load "60 N".'),))
+            raise case.refused(Fault("--load", "", None, problem, 'Give e.g. --load "60 N".'))
         require(case, FILMS)
         self._machines = StaticMachines(case)
         self._near: MachineAtRest | None = None
@@ -218,7 +218,7 @@ def _speeds(case: Case) -> list[float]:
         top = max(abs(case.speed.start), abs(case.speed.end))
         return [top * share / SPEEDS for share in range(1, SPEEDS + 1)]
     problem, remedy = "is missing.", 'Give --speed, e.g. --speed "900 Hz", or add [speed].'
-    raise InputError(case.name or "case", (Fault("speed", "", None, problem, remedy),))
+    raise case.refused(Fault("speed", "", None, problem, remedy))
 
 
 SETTLED, CARRIED = 1e-12, 1e-6  # of the load: what is left over at rest, and where steps no longer help

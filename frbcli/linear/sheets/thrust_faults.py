@@ -13,7 +13,7 @@ from frbcli.units import display
 def require_sheet(case: Case, gaps: Sequence[float] = ()) -> None:
     """Raises InputError with every reason why thrust bearings of a case have no sheet at some gaps in m."""
     if reasons := [*_faults(case), *_beyond_play(case, gaps)]:
-        raise InputError(case.name or "case", tuple(reasons))
+        raise case.refused(*reasons)
 
 
 def _faults(case: Case) -> Iterator[Fault]:

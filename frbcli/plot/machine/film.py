@@ -84,17 +84,13 @@ def _draw_lines(figure: Any, solved: list[KinematicResult]) -> None:
         gap.plot(phi, values, **(look if _moved(solved) else {"color": GREY}))
     if len(solved) > 1:
         pressure.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    pressure.set_title("along the middle of the film")
-    pressure.set_ylabel("pressure in bar")
+    pressure.set(title="along the middle of the film", ylabel="pressure in bar")
     gap.set_ylabel("gap H")
     gap.set_ylim(bottom=0.0)
     for axes in oil:
-        axes.set_ylabel("oil fraction")
-        axes.set_ylim(0.0, 1.05)
+        axes.set(ylabel="oil fraction", ylim=(0.0, 1.05))
     lowest = [gap, *oil][-1]
-    lowest.set_xlim(0.0, 360.0)
-    lowest.set_xticks(range(0, 361, 45))
-    lowest.set_xlabel("φ in ° (0 at the top, counter-clockwise)")
+    lowest.set(xlim=(0.0, 360.0), xticks=range(0, 361, 45), xlabel="φ in ° (0 at the top, counter-clockwise)")
 
 
 def _draw_maps(figure: Any, solved: list[KinematicResult]) -> None:
@@ -122,9 +118,7 @@ def _draw_maps(figure: Any, solved: list[KinematicResult]) -> None:
         bar.outline.set_visible(False)
         lowest = rows[shown[-1], column]
         lowest.tick_params(labelbottom=True)
-        lowest.set_xlim(0.0, 360.0)
-        lowest.set_xticks(range(0, 361, 90))
-        lowest.set_xlabel("φ in °; z from 0 to 1 along the section")
+        lowest.set(xlim=(0.0, 360.0), xticks=range(0, 361, 90), xlabel="φ in °; z from 0 to 1 along the section")
     for axes in rows[:, 0]:
         axes.set_ylabel("z", fontsize=8.0)
 
@@ -142,8 +136,7 @@ def _draw_friction(figure: Any, solved: list[KinematicResult], speed: float) -> 
         axes.axvline(speed, color=GREY, linewidth=0.8)
         axes.set_xscale("log")
         plain_numbers(axes.xaxis)
-        axes.set_xlabel("speed in Hz (line: of this test)")
-        axes.set_ylabel(label)
+        axes.set(xlabel="speed in Hz (line: of this test)", ylabel=label)
 
 
 def _look(number: int, count: int) -> dict[str, Any]:
@@ -249,8 +242,7 @@ def law_figure(case: Case) -> Picture:
         left.set_ylabel("oil fraction")
         right.set_xlim(0.0, WIDEST * cavity / BAR)
         for axes in (left, right):
-            axes.set_xlabel("absolute pressure in bar")
-            axes.set_ylim(-0.03, 1.06)
+            axes.set(xlabel="absolute pressure in bar", ylim=(-0.03, 1.06))
             axes.axvline(cavity / BAR, color=GREY, linewidth=0.8, zorder=0.5)
             axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=1, fontsize=8.0)
     return figure

@@ -140,8 +140,7 @@ def _frequencies(axes: Axes, diagram: LimitCycles) -> None:
         axes.plot(*at, linestyle="", marker=marker, color=BLACK, markersize=4.5, zorder=4)
         frequencies = [point.frequency_uncertainty_Hz for point in points]
         _bars(axes, *at, [point.value_uncertainty for point in points], frequencies)
-    axes.set_xlim(float(ends[0]), float(ends[1]))
-    axes.set_ylim(0.0, ROOM * axes.get_ylim()[1])
+    axes.set(xlim=(float(ends[0]), float(ends[1])), ylim=(0.0, ROOM * axes.get_ylim()[1]))
     axes.set_xlabel("rotor speed in Hz" if diagram.over == SPEED else name_of_key(diagram.over, diagram.unit))
     axes.set_ylabel("frequency in Hz")
 
@@ -224,8 +223,7 @@ def stability_map_figure(chart: StabilityMap) -> Figure:
             if at:
                 over, values = zip(*at, strict=True)
                 axes.plot(over, values, linestyle="", marker=marker, color=BLACK, markersize=4.5, label=label)
-        axes.set_xlim(*_limits(chart))
-        axes.set_ylim(chart.growth.values[0], chart.growth.values[-1])
+        axes.set(xlim=_limits(chart), ylim=(chart.growth.values[0], chart.growth.values[-1]))
         axes.set_xlabel("rotor speed in Hz" if chart.over == SPEED else name_of_key(chart.over, chart.over_unit))
         axes.set_ylabel(name_of_key(chart.key, chart.unit))
         _legend_once(axes)

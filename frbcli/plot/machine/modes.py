@@ -77,8 +77,7 @@ def draw_frequencies(axes: Axes, points: list[StabilityPoint]) -> None:
         some = which & (errors > 0.0)  # NaN where they are not known
         axes.errorbar(speeds[some], frequencies[some], errors[some] / (2 * np.pi), linestyle="", ecolor=colour,
                       elinewidth=0.8, capsize=1.5, zorder=1.8)  # fmt: skip
-    axes.set_xlim(0.0, fastest * (BESIDE_LAST if len(points) > 1 else BESIDE_ONE))
-    axes.set_ylim(0.0, top)
+    axes.set(xlim=(0.0, fastest * (BESIDE_LAST if len(points) > 1 else BESIDE_ONE)), ylim=(0.0, top))
     axes.set_ylabel("damped frequency in Hz")
 
 
@@ -98,8 +97,7 @@ def _draw_growth(axes: Axes, points: Sequence[StabilityPoint]) -> None:
     axes.set_ylim(min(low, -GROWTH_FLOOR), max(high, GROWTH_FLOOR))
     error = np.array([point.critical_error for point in points])
     axes.fill_between(speeds, growth - error, growth + error, color=BLACK, alpha=BAND, linewidth=0.0, zorder=2.5)
-    axes.set_xlabel("rotor speed in Hz")
-    axes.set_ylabel("growth in 1/s")
+    axes.set(xlabel="rotor speed in Hz", ylabel="growth in 1/s")
 
 
 def _mark_threshold(panels: tuple[Axes, Axes], threshold: Threshold, unit: SpeedUnit) -> None:
@@ -160,9 +158,7 @@ def _draw_campbell(axes: Axes, modes: Modes) -> None:
             low, high = (1.0 - error) * frequencies, (1.0 + error) * frequencies
             axes.fill_between(speeds, low, high, color=colour, alpha=BAND, linewidth=0.0)
     axes.plot([0.0, fastest], [0.0, fastest], color=GREY, linestyle=(0, (1, 2)), label="1X")
-    axes.set_xlim(0.0, fastest)
-    axes.set_ylim(0.0, HEADROOM * max([fastest, *modes.free_Hz[:1]]))
-    axes.set_xlabel("rotor speed in Hz")
+    axes.set(xlim=(0.0, fastest), ylim=(0.0, HEADROOM * max([fastest, *modes.free_Hz[:1]])), xlabel="rotor speed in Hz")
     axes.set_ylabel("natural frequency in Hz")
 
 
@@ -175,8 +171,7 @@ def _draw_shape(axes: Axes, modes: Modes, mode: Mode) -> None:
         for _, place in places:
             axes.plot(scale * place, 0.0, marker=marker, color=colour, markersize=7, linestyle="none")
     axes.set_title(f"{mode.frequency_Hz:.4g} Hz, {mode.kind}", fontsize=9.0)
-    axes.set_ylim(-1.15, 1.15)
-    axes.set_yticks([])
+    axes.set(ylim=(-1.15, 1.15), yticks=[])
 
 
 def shapes_figure(shapes: DampedModes) -> Figure:

@@ -156,14 +156,12 @@ def _orbits(axes: Axes, motion: Response, speed: int) -> None:
         axes.plot(x[0], y[0], color=colour, marker="o", markersize=4.0)
     axes.set_aspect("equal", adjustable="datalim")
     dots = "mark along x" if motion.excitation == UNBALANCE else f"{motion.excitation} at angle 0"
-    axes.set_title(f"orbits at {motion.case.speed_unit.words(motion.speeds_Hz[speed])}; dots: {dots}")
-    axes.set_xlabel("x in µm")
+    axes.set(title=f"orbits at {motion.case.speed_unit.words(motion.speeds_Hz[speed])}; dots: {dots}", xlabel="x in µm")
     axes.set_ylabel("y in µm")
 
 
 def _speed_axis(axes: Axes, motion: Response) -> None:
-    axes.set_xlabel("rotor speed in Hz")
-    axes.set_xlim(0.0, MARGIN * float(motion.speeds_Hz[-1]))
+    axes.set(xlabel="rotor speed in Hz", xlim=(0.0, MARGIN * float(motion.speeds_Hz[-1])))
 
 
 def _line_of(number: int) -> tuple[str, object]:
@@ -217,13 +215,10 @@ def draw_critical_map(axes: Axes, speeds: CriticalMap) -> None:
                   markersize=5.0, label=label)  # fmt: skip
     top = max(abs(speeds.case.speed.start), abs(speeds.case.speed.end))
     axes.axhline(top, color=GREY, linewidth=0.8, linestyle=(0, (1, 2)), label="highest speed of the case")
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_xlim(float(speeds.stiffness[0]), float(speeds.stiffness[-1]))
+    axes.set(xscale="log", yscale="log", xlim=(float(speeds.stiffness[0]), float(speeds.stiffness[-1])))
     lowest = float(np.nanmin([speeds.forward, speeds.backward]))
     highest = min(max(2.0 * top, float(np.nanmax([speeds.forward, speeds.backward]))), 20.0 * top)
-    axes.set_ylim(max(lowest, 0.02 * top), 1.2 * highest)
-    axes.set_xlabel("stiffness of a bearing in N/m")
+    axes.set(ylim=(max(lowest, 0.02 * top), 1.2 * highest), xlabel="stiffness of a bearing in N/m")
     axes.set_ylabel("critical speed in Hz")
     _name_modes(axes, speeds)
 

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.elements.supports import DamperElement
 from frbcli.errors import Fault
@@ -309,7 +308,7 @@ def _shaft_faults(case: Case) -> Iterator[Fault]:
 def _ring_faults(case: Case) -> Iterator[Fault]:
     """Shells around rings, which would tilt, too."""
     for index, bearing in enumerate(case.bearings):
-        if isinstance(bearing, FloatingRingBearing) and bearing.misalignment is not None:
+        if bearing.kind == "floating-ring" and bearing.misalignment is not None:
             problem = "tilts the shell around a ring, whose own tilt is modelled in films that follow it alone."
             key = f"{bearing_key(case, index)}.misalignment"
             yield Fault(key, as_text(bearing.misalignment), None, problem, ALIGNED)

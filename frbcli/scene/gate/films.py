@@ -266,13 +266,6 @@ def rough_coupling_faults(case: Case) -> Iterator[Fault]:
         yield Fault("film.coupling", case.film.coupling, None, problem, f'{SMOOTH}, or film.coupling = "auto".')
 
 
-def rough_heat_faults(case: Case) -> Iterator[Fault]:
-    """Heat in cycles and in tests does not know of boundary friction."""
-    if case.contact.rough and case.heat is not None:
-        problem = "makes heat by friction, and in cycles and tests the films alone make heat."
-        yield Fault("contact.model", "asperities", None, problem, f'{SMOOTH}, or thermal.model = "none".')
-
-
 def sheet_faults(case: Case) -> Iterator[Fault]:
     """A sheet has the films between surfaces that turn against each other."""
     if not case.bearings:

@@ -11,7 +11,7 @@ from dataclasses import replace
 from functools import partial
 
 from frbcli.case.schema import Case
-from frbcli.errors import Fault, InputError
+from frbcli.errors import Fault
 from frbcli.scene.coupling import coupling_of
 from frbcli.scene.films import channel_faults, tilts
 from frbcli.scene.forms.tilted import AT_REST, RUNS
@@ -38,6 +38,7 @@ from frbcli.scene.gate.rule import (
     WHIRLS,
     Faults,
     Rule,
+    refusal,
 )
 from frbcli.scene.machine.rotor import (
     element_faults,
@@ -76,7 +77,12 @@ RULES = (
     Rule(films.rough_faults, ALL),
     Rule(films.rough_tilt_faults, KINEMATIC),
     Rule(films.rough_coupling_faults, (RUN,)),
-    Rule(films.rough_heat_faults, (*KINEMATIC, *EVERY_CYCLE)),
+    refusal(
+        (*KINEMATIC, *EVERY_CYCLE), "contact.model",
+        lambda case: "asperities" if case.contact.rough and case.heat else None,
+        "makes heat by friction, and in cycles and tests the films alone make heat",
+        f'{films.SMOOTH}, or thermal.model = "none".',
+    ),
     Rule(films.saturation_faults, ALL),
     Rule(films.sound_faults, ALL),
     Rule(films.moved_gas_faults, (RUN, *EVERY_CYCLE), moving=True),
@@ -99,9 +105,17 @@ RULES = (
     Rule(static.sheet_faults, SHEETS),
     Rule(films.sheet_faults, SHEETS),
     Rule(films.loaded_faults, (LOADED,)),
-    Rule(static.loaded_heat_faults, (LOADED,)),
-    Rule(static.chart_heat_faults, (CHART,)),
-    Rule(static.missing_heat_faults, (HEAT,)),
+    refusal(
+        (LOADED,), "thermal.model", static.lumped, "needs the load of a [rotor], and takes no other",
+        'Leave --load out and add [rotor] and [speed], or write thermal.model = "none".',
+    ),
+    refusal(
+        (CHART,), "thermal.model", static.lumped,
+        "is not modelled over eccentricity: the temperatures belong to the load of the rotor",
+        'Choose --over speed, or write thermal.model = "none": films then have oil.temperature.',
+    ),
+    refusal((HEAT,), "thermal", lambda case: None if case.heat else "", "is missing",
+            'Add the table [thermal] with model = "lumped".'),
     Rule(static.held_ring_faults, (BEARING, LOADED, STABILITY)),
     Rule(static.held_film_faults, (BEARING, LOADED, STABILITY)),
     Rule(static.held_cycle_faults, EVERY_CYCLE),
@@ -115,7 +129,8 @@ RULES = (
     Rule(static.cartridge_faults, EVERY_CYCLE),
     Rule(lambda case: speed_dependent(case, static.CONSTANT), (CYCLES,)),
     Rule(static.cycle_heat_faults, (SPEED_CYCLES, WHIRLS)),
-    Rule(static.other_cycle_heat_faults, (CYCLES,)),
+    refusal((CYCLES,), "thermal.model", static.lumped, "balances the heat of limit cycles over the speed alone",
+            static.HEAT_REMEDY),
     Rule(stray_load_faults, EVERY_CYCLE),
     Rule(static.smooth_faults, (CYCLES,)),
     Rule(static.speed_cycle_faults, (SPEED_CYCLES, WHIRLS)),
@@ -125,7 +140,10 @@ RULES = (
     Rule(runs.axial_heat_faults, (RUN,), moving=True),
     Rule(runs.axial_faults, (RUN, *EVERY_CYCLE), moving=True, last=True),
     Rule(runs.drive_faults, (RUN,)),
-    Rule(runs.given_speed_faults, (*KINEMATIC, *EVERY_CYCLE, LADDER)),
+    refusal(
+        (*KINEMATIC, *EVERY_CYCLE, LADDER), "drive", lambda case: "" if case.drive else None,
+        "leaves the speed free, and this analysis needs a given one", "Write [speed] instead of [drive].",
+    ),
     Rule(runs.number_faults, (RUN,), last=True),
     Rule(runs.speed_faults, (RUN,), last=True),
     *(Rule(partial(kinematic.end_faults, test=test), (test,), last=True) for test in KINEMATIC),
@@ -151,4 +169,4 @@ def faults(case: Case, analysis: str = FILMS) -> list[Fault]:
 def require(case: Case, analysis: str = FILMS, more: Faults = ()) -> None:
     """Raises InputError with every reason why an analysis of a case is refused; more: found by its caller."""
     if reasons := [*more, *faults(case, analysis)]:
-        raise InputError(case.name or "case", tuple(reasons))
+        raise case.refused(*reasons)

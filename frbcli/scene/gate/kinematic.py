@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from frbcli.case.bearing import FilmBearing, FloatingRingBearing, SingleFilmBearing
+from frbcli.case.bearing import FilmBearing, SingleFilmBearing
 from frbcli.case.film import FilmGeometry
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
@@ -71,7 +71,7 @@ def choice_faults(case: Case, test: str) -> Iterator[Fault]:
         yield Fault("motion.film", asked, None, "is no film of the case.", remedy)
         return
     bearing = _bearing(case, index)
-    if not isinstance(bearing, FloatingRingBearing):
+    if bearing.kind != "floating-ring":
         return
     if coupled(bearing):
         key = f"{bearing_key(case, case.bearings.index(bearing))}.channels"
@@ -108,7 +108,7 @@ def _bearing(case: Case, index: int) -> FilmBearing:
 
 def _alone(bearing: FilmBearing, film: FilmGeometry) -> SingleFilmBearing:
     """A bearing of one film on a fixed shell."""
-    if isinstance(bearing, SingleFilmBearing):
+    if bearing.kind == "single-film":
         return altered(bearing, {"damper": None, "support": None})
     own = SingleFilmBearing.model_fields
     given = {field.alias or name: getattr(film, name) for name, field in type(film).model_fields.items() if name in own}

@@ -121,13 +121,6 @@ def drive_faults(case: Case) -> Iterator[Fault]:
         yield Fault("drive.reaction", "true", None, problem, "Leave one of the two out.")
 
 
-def given_speed_faults(case: Case) -> Iterator[Fault]:
-    """Limit cycles, kinematic tests and the ladder are at given speeds."""
-    if case.drive is not None:
-        problem = "leaves the speed free, and this analysis needs a given one."
-        yield Fault("drive", "", None, problem, "Write [speed] instead of [drive].")
-
-
 def speed_faults(case: Case) -> Iterable[Fault]:
     """A run has speeds. Raises InputError for a case of kinematic tests, which has none."""
     run_omega(case)

@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.film import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.elements.pin import PinElement
@@ -134,7 +133,7 @@ def _held_rings(case: Case) -> Iterator[_HeldRing]:
     if case.given_rotor is None or case.rotor.gravity <= 0.0:
         return
     for key, given in zip(case.given_keys, case.given_bearings, strict=True):
-        around = [part for part in given.parts if isinstance(part, FloatingRingBearing)]
+        around = [part for part in given.parts if part.kind == "floating-ring"]
         outer = tuple(part.outer for part in around)
         if around and around[0].ring.spin == "blocked":
             what = "keeps the ring from turning"
@@ -167,26 +166,9 @@ def port_coupling_faults(case: Case) -> Iterator[Fault]:
         )  # fmt: skip
 
 
-def loaded_heat_faults(case: Case) -> Iterator[Fault]:
-    """Heat belongs to the load of a rotor."""
-    if case.heat is not None:
-        problem = "needs the load of a [rotor], and takes no other."
-        remedy = 'Leave --load out and add [rotor] and [speed], or write thermal.model = "none".'
-        yield Fault("thermal.model", "lumped", None, problem, remedy)
-
-
-def chart_heat_faults(case: Case) -> Iterator[Fault]:
-    """Heat belongs to the load of a rotor, not to an eccentricity."""
-    if case.heat is not None:
-        remedy = 'Choose --over speed, or write thermal.model = "none": films then have oil.temperature.'
-        problem = "is not modelled over eccentricity: the temperatures belong to the load of the rotor."
-        yield Fault("thermal.model", "lumped", None, problem, remedy)
-
-
-def missing_heat_faults(case: Case) -> Iterator[Fault]:
-    """The fault of a case whose static results need heat that it has not."""
-    if case.heat is None:
-        yield Fault("thermal", "", None, "is missing.", 'Add the table [thermal] with model = "lumped".')
+def lumped(case: Case) -> str | None:
+    """The model of heat of a case, None without one, see refusal."""
+    return None if case.heat is None else "lumped"
 
 
 def range_faults(case: Case) -> Iterator[Fault]:
@@ -235,13 +217,6 @@ def cycle_heat_faults(case: Case) -> Iterator[Fault]:
         if getattr(case.heat, key) == "follows":
             problem = "changes the clearances over which the motions of a branch are measured."
             yield Fault(f"thermal.{key}", "follows", None, problem, 'Write "fixed".')
-
-
-def other_cycle_heat_faults(case: Case) -> Iterator[Fault]:
-    """Cycles over other numbers than the speed are computed at given temperatures."""
-    if case.heat is not None:
-        problem = "balances the heat of limit cycles over the speed alone."
-        yield Fault("thermal.model", "lumped", None, problem, HEAT_REMEDY)
 
 
 def turning_port_faults(case: Case) -> Iterator[Fault]:

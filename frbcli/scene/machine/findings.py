@@ -19,7 +19,7 @@ from operator import attrgetter
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
+from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.film import ColdClearance, FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, spaced, speed_shown
@@ -84,7 +84,7 @@ def operating_points(case: Case) -> tuple[FilmOperation, ...]:
     omega = 2.0 * math.pi * _top_speed(case)
     operations: list[FilmOperation] = []
     for bearing in case.bearings:
-        if isinstance(bearing, SingleFilmBearing):
+        if bearing.kind == "single-film":
             strain = shaft_rotation_strain(_shaft(case), omega, 0.5 * bearing.diameter)
             operations.append(_operation(case, bearing, bearing.name or "film", omega, -strain))
         else:

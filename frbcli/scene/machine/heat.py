@@ -100,7 +100,7 @@ class _Builder:
     def heat(self) -> Heat:
         film = 0
         for bearing in self._case.bearings:
-            if isinstance(bearing, SingleFilmBearing):
+            if bearing.kind == "single-film":
                 self._single(bearing, film)
                 film += 1
             else:
@@ -149,7 +149,7 @@ class _Builder:
         its groove, whose oil comes from the supply."""
         inlets: list[int] = []
         for bearing in self._case.bearings:
-            if isinstance(bearing, FloatingRingBearing):
+            if bearing.kind == "floating-ring":
                 through = coupled(bearing) and not opens_to_groove(bearing)
                 inlets += [len(inlets) + 1 if through else FROM_SUPPLY, FROM_SUPPLY]
             else:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.arrays import Array
-from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing, GivenBearing
+from frbcli.case.bearing import FloatingRingBearing, GivenBearing
 from frbcli.case.schema import Case
 from frbcli.elements.ball import BallBearingElement
 from frbcli.elements.coefficients import GivenCoefficients
@@ -264,7 +264,7 @@ def _bodies_and_links(
         bodies += _rings(given, count, case)
     for bearing in case.bearings:
         journal, shell = site.journal(bearing.name), site.shell(bearing.name)
-        if isinstance(bearing, FloatingRingBearing):
+        if bearing.kind == "floating-ring":
             ring = _ring_node(bearing)
             films += [Link(journal, ring, count, sees), Link(ring, shell, count, sees)]
         else:
@@ -287,10 +287,10 @@ def _rings(bearing: GivenBearing, count: float, case: Case) -> Iterator[Body]:
     """The bodies of the ring of a bearing: the rings of equal bearings move as one, with the mass of all. A ring of its
     own tilts where its films follow that."""
     gravity = case.rotor.gravity
-    if isinstance(bearing, CartridgeBearing):
+    if bearing.kind == "cartridge":
         (mass, _, tilt_inertia), (left, right), (start, end) = bearing.body, bearing.parts, bearing.positions
         yield tilting_mass((_ring_node(left), _ring_node(right)), mass, tilt_inertia, end - start, gravity)
-    if isinstance(bearing, FloatingRingBearing):
+    if bearing.kind == "floating-ring":
         node, mass = _ring_node(bearing), count * bearing.ring_mass
         tilts, inertia = case.film.tilt == "follows", count * bearing.ring_tilt_inertia
         yield tilting_ring(node, mass, inertia, gravity) if tilts else point_mass(node, mass, gravity)

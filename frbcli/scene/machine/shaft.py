@@ -16,7 +16,7 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.case.rotor import JeffcottRotor, RigidRotor, unbalance_sizes, with_loss
 from frbcli.case.schema import Case
-from frbcli.errors import Fault, InputError
+from frbcli.errors import Fault
 from frbcli.rotor.assembly import Body, LinearRotor, jeffcott_rotor, point_mass
 from frbcli.units import ANGLE, display
 
@@ -173,7 +173,7 @@ class Shaft(ABC):
         """The shaft without bearings in its free modes. Raises InputError for one without sections."""
         kind = self.case.rotor.kind
         fault = Fault("rotor.kind", kind, None, "has no shaft of sections.", 'Take kind = "turbocharger".')
-        raise InputError(self.case.name or "case", (fault,))
+        raise self.case.refused(fault)
 
 
 STANDS, TURNS = (

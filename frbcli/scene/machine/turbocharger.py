@@ -15,7 +15,6 @@ from typing import Any, ClassVar
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.case.elements import BallBearingKeys
 from frbcli.case.rotor import (
     Disk,
     JeffcottRotor,
@@ -28,7 +27,7 @@ from frbcli.case.rotor import (
 )
 from frbcli.case.schema import Case
 from frbcli.elements.thrust import COLLAR
-from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.errors import Fault, NotConverged
 from frbcli.rotor.assembly import Body, LinearRotor
 from frbcli.rotor.beam import ELEMENTS, BeamSection
 from frbcli.rotor.reduction import (
@@ -182,7 +181,7 @@ class TurbochargerShaft(Shaft):
         journals = tuple(Journal(bearing.name, bearing.position or 0.0) for bearing in bearings)
         acting = case.thrust_bearings if case.axial is not None else ()
         collars = [Journal(COLLAR, each.position or 0.0) for each in acting]
-        pairs = (each for each in case.elements if isinstance(each, BallBearingKeys) and each.row_distance is not None)
+        pairs = (each for each in case.elements if each.kind == "ball" and each.row_distance is not None)
         collars += [Journal(each.name, each.position or 0.0) for each in pairs]
         top = 0.0 if speed is None else 2.0 * math.pi * max(abs(speed.start), abs(speed.end))
         asked = (rotor.modes, rotor.cutoff, case.accuracy.target)
@@ -191,8 +190,7 @@ class TurbochargerShaft(Shaft):
         except NotConverged as error:
             problem = f"is no shaft whose motion can be computed. {error}"
             remedy = "Check the orders of magnitude of its sections and of the masses of [[disk]]."
-            fault = Fault("shaft", f"{len(sections)} sections", None, problem, remedy)
-            raise InputError(case.name or "case", (fault,)) from None
+            raise case.refused(Fault("shaft", f"{len(sections)} sections", None, problem, remedy)) from None
 
     def free_modes(self) -> FreeModes:
         return self.free().modes

@@ -29,7 +29,7 @@ from frbcli.arrays import Array
 from frbcli.case.film import FilmGeometry
 from frbcli.case.over_time import OverTime
 from frbcli.case.schema import Case
-from frbcli.errors import Fault, InputError
+from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.cells.mesh.grid import least_around
 from frbcli.film.section_faults import no_inflow
@@ -175,12 +175,11 @@ def run_down_profile(case: Case) -> SpeedProfile:
         return _with_tables(case, *map(list, case.drive.course(case.polar_inertia, whole)))
     if speed.times:
         problem = "say how the speed goes down, too."
-        fault = Fault("speed.points", f"{len(speed.times)} points", None, problem, "Call `frb runup`.")
-        raise InputError(case.name or "case", (fault,))
+        raise case.refused(Fault("speed.points", f"{len(speed.times)} points", None, problem, "Call `frb runup`."))
     if case.axial is not None and isinstance(case.axial.load, OverTime):
         problem = "changes over time, and a run-down has each speed twice: a speed has more than one load."
         fault = Fault("axial.load", "over time", None, problem, "Give one load, or one with the square of the speed.")
-        raise InputError(case.name or "case", (fault,))
+        raise case.refused(fault)
     times, speeds = [0.0, speed.duration], [speed.start, speed.end]
     if speed.hold > 0.0:
         times.append(times[-1] + speed.hold)
@@ -194,7 +193,7 @@ def _with_tables(case: Case, times: list[float], speeds: list[float]) -> SpeedPr
     """The profile through speeds in Hz at times in s, with kinks of no angle at the rows of tables over time."""
     faults = (*table_faults(case, times[0], times[-1]), *input_faults(case, times[0], times[-1]))
     if faults:
-        raise InputError(case.name or "case", faults)
+        raise case.refused(*faults)
     stops = (*table_times(case).tolist(), *input_times(case), *(() if case.drive is None else case.drive.stops))
     return speed_profile(times, [2 * math.pi * value for value in speeds]).with_stops(stops)
 

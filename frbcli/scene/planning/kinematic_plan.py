@@ -155,7 +155,8 @@ def _decisions(
     law, bearing = law_named(case.film.cavitation), case.bearings[0].films[0]
     yield _gap_decision(section, bearing, tilts(case))
     yield from _tilt_decision(case, test, section)
-    yield from _profile_decision(section)
+    if (shell := section.profile) is not None:
+        yield Decision(shell.key, *shell.plan_entry(section.clearance))
     yield Decision("film", *_film(case, law, modal))
     if bearing.sealing:
         yield Decision("ends", *bearing.sealing)
@@ -208,8 +209,3 @@ def _tilt_decision(case: Case, test: str, section: Section) -> list[Decision]:
     low, high = least_gaps(section, places_of(case, test), slope_of(tilt_of(case), section))
     reason = f"the least gap is {size * low:.3g} um at the end z < 0 and {size * high:.3g} um at the other"
     return [Decision("tilt", f"{1e3 * x:.4g}, {1e3 * y:.4g} mrad", reason)]
-
-
-def _profile_decision(section: Section) -> list[Decision]:
-    shell = section.profile
-    return [] if shell is None else [Decision(shell.key, *shell.plan_entry(section.clearance))]

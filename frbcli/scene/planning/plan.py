@@ -258,13 +258,10 @@ def _about_target(case: Case, plan: Plan) -> Decision:
         reasons.append(f"budget of {accuracy.budget:g} s")
     why = ", ".join(reasons)
     cost = f"{needed:.1g}, {clock(_total_s(case, asked))}{knee}"
-    needs += f" {_mesh_text(asked)} and tolerance {asked.tolerance:.2g}: {cost}"
+    mesh = f"{asked.mesh.axial} x {asked.mesh.circumferential} elements"
+    mesh = mesh if asked.cells is None else "{} x {} cells".format(*asked.cells)
+    needs += f" {mesh} and tolerance {asked.tolerance:.2g}: {cost}"
     return Decision("target", value, f"{needs}; chosen: {own}; {why}")
-
-
-def _mesh_text(plan: Plan) -> str:
-    elements = f"{plan.mesh.axial} x {plan.mesh.circumferential} elements"
-    return elements if plan.cells is None else "{} x {} cells".format(*plan.cells)
 
 
 def _total_s(case: Case, plan: Plan) -> float:
@@ -352,7 +349,7 @@ def _decide_scene(case: Case, decide: Decide) -> None:
         moves = "moves, tilts and turns" if case.film.tilt == "follows" else "moves and turns"
         decide("films", len(places), f"each ring lies between an inner and an outer film, and {moves}")
     for given in case.given_bearings:
-        if isinstance(given, CartridgeBearing):
+        if given.kind == "cartridge":
             decide(f"cartridge {given.name}".strip(), *_body(given, case.film.tilt == "follows"))
     for bearing in rings(case):
         alone = bearing in case.given_bearings  # and not an end of a cartridge
