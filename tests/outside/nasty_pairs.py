@@ -161,9 +161,9 @@ def trial(seed: int) -> tuple[tuple[str, ...], str, list[str]]:
             source, settings = TOUCHING[0]
     if seed >= ELEMENTS:
         source, settings = WITH_ELEMENTS[chance.randrange(len(WITH_ELEMENTS))]
-    short = [each for each in SHORT_RUN if settings is not DRIVEN or not each.startswith("speed.")]
     of_films = () if source == ON_BALLS else (MOTION, *NEEDS.get(command[0], ()))
-    settings = (*settings, *short, *of_films)
+    more = [each for each in (*SHORT_RUN, *of_films) if settings is not DRIVEN or not each.startswith("speed.")]
+    settings = (*settings, *more)
     known = [value for value in _base(source, settings) if value.key.partition(".")[0] not in ("name", "title")]
     count = 2 if seed < SURFACES else chance.choice((1, 1, 2))
     if SURFACES <= seed < ELEMENTS:
