@@ -16,7 +16,7 @@ from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import ForceBalance, Search, search_rest
 from frbcli.errors import NotConverged
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cells.balance.side_flow import outflow
+from frbcli.film.cells.balance.ends import outflow
 from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
 from frbcli.film.cells.linearised import settled_force
 from frbcli.film.cells.loads import CavitationFactor, FilmLoads, estimate, loads

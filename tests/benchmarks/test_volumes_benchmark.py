@@ -23,7 +23,8 @@ from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cavitation.conditions import Elrod
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.balance.balances import FLOWS, GridMotion
+from frbcli.film.cells.balance.balances import GridMotion
+from frbcli.film.cells.balance.ends import FLOWS
 from frbcli.film.cells.balance.grid_motion import level
 from frbcli.film.cells.balance.newton_step import film_newton
 from frbcli.film.cells.balance.states import FRACTION, STATES, cell_states, follow_law

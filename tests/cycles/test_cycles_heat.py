@@ -19,7 +19,7 @@ from frbcli.cycles.method.follower import Follower
 from frbcli.cycles.unbalance import Synchronous, driven_equations
 from frbcli.equilibrium.static_machine import WarmMachines
 from frbcli.errors import InputError
-from frbcli.film.cells.balance.side_flow import outflow
+from frbcli.film.cells.balance.ends import outflow
 from frbcli.film.cells.film import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.mean_outflow import mean_end_flows

@@ -12,7 +12,7 @@ from helpers.films import AMBIENT, PLAIN, SUPPLIED
 from frbcli.bearing_tests.kinematic import rotation
 from frbcli.case.reading.load import load_case
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.cells.balance.side_flow import outflow
+from frbcli.film.cells.balance.ends import outflow
 from frbcli.film.cells.film import Motion, VolumeFilm
 from frbcli.film.cells.loads import FilmLoads
 from frbcli.film.cells.mesh.grid import force_weights, run_grid

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.film.cells.balance.balances import CHANNELS_NET, ENDS_NET, SUPPLY_NET
+from frbcli.film.cells.balance.ends import CHANNELS_NET, ENDS_NET, SUPPLY_NET
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.data import PASSED
 from frbcli.film.cells.gas.balance import OilPaths

@@ -17,7 +17,7 @@ from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
-from frbcli.film.cells.balance.balances import CHANNELS_NET
+from frbcli.film.cells.balance.ends import CHANNELS_NET
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.channels.channel import Channel, channel_resistance
 from frbcli.film.cells.channels.data import with_channels

@@ -8,7 +8,7 @@ from marches import planned, run_up
 from test_cells_run import Array, case_of
 
 from frbcli.case.schema import Case
-from frbcli.film.cells.balance.balances import GAS_IN, GAS_OUT, GAS_RELEASED
+from frbcli.film.cells.balance.ends import GAS_IN, GAS_OUT, GAS_RELEASED
 from frbcli.film.cells.data import GAS, PASSED
 from frbcli.film.cells.linearised import linear_film, stiffness_at
 from frbcli.film.kinds.tilted import TiltedFilms

@@ -7,7 +7,7 @@ import pytest
 from films import rectangular
 
 from frbcli.case.reading.load import load_case
-from frbcli.film.cells.balance.side_flow import outflow
+from frbcli.film.cells.balance.ends import outflow
 from frbcli.film.cells.film import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section

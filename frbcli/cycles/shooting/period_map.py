@@ -22,8 +22,8 @@ from frbcli.arrays import Array, Truths
 from frbcli.case.schema import Case
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.errors import NotConverged
-from frbcli.film.cells.balance.balances import FILLING, FLOWS
 from frbcli.film.cells.balance.boundaries import ALL
+from frbcli.film.cells.balance.ends import FILLING, FLOWS
 from frbcli.film.cells.data import FILM, GAS, GAS_RATE, OIL, PASSED, RATE, UNKNOWN, W_BEFORE, WET, WET_WITH_GAS, W
 from frbcli.rotor.loads import speed_profile
 from frbcli.runs.inputs import RunInputs

@@ -38,8 +38,9 @@ from frbcli.arrays import Array, Complex
 from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.law import CellState
-from frbcli.film.cells.balance.balances import FLOWS, SUPPLY_NET, balances, without_ends
+from frbcli.film.cells.balance.balances import balances
 from frbcli.film.cells.balance.boundaries import ALL
+from frbcli.film.cells.balance.ends import FLOWS, SUPPLY_NET, without_ends
 from frbcli.film.cells.balance.faces import press_cells
 from frbcli.film.cells.balance.grid_motion import seen_by_grid
 from frbcli.film.cells.balance.states import (

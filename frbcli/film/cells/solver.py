@@ -17,16 +17,9 @@ from frbcli.arrays import Array
 from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.law import CellState
-from frbcli.film.cells.balance.balances import (
-    CREATED,
-    ENDS_NET,
-    FLOWS,
-    INFLOW,
-    OUTFLOW,
-    SUPPLY_NET,
-    balances,
-)
+from frbcli.film.cells.balance.balances import balances
 from frbcli.film.cells.balance.boundaries import feed_at, is_limited, limited
+from frbcli.film.cells.balance.ends import CREATED, ENDS_NET, FLOWS, INFLOW, OUTFLOW, SUPPLY_NET
 from frbcli.film.cells.balance.grid_motion import seen_by_grid
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,

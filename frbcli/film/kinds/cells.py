@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 
 from frbcli.arrays import Array
 from frbcli.errors import NotConverged
-from frbcli.film.cells.balance.balances import CREATED, ENDS_NET, FILLING, FLOWS, INFLOW, OUTFLOW
 from frbcli.film.cells.balance.boundaries import ALL, supply_line
-from frbcli.film.cells.balance.side_flow import opens_far, outflow
+from frbcli.film.cells.balance.ends import CREATED, ENDS_NET, FILLING, FLOWS, INFLOW, OUTFLOW, opens_far, outflow
 from frbcli.film.cells.cavity_edge import CellEnds
 from frbcli.film.cells.data import (
     COS,

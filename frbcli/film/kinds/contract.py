@@ -27,8 +27,7 @@ from numpy.typing import NDArray
 
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
-from frbcli.film.cells.balance.balances import FLOWS
-from frbcli.film.cells.balance.side_flow import outflow
+from frbcli.film.cells.balance.ends import FLOWS, outflow
 from frbcli.film.cells.data import WET
 from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution
 from frbcli.film.cells.linearised import LinearFilm, film_at

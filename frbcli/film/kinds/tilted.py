@@ -16,8 +16,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.errors import NotConverged
-from frbcli.film.cells.balance.balances import FLOWS
-from frbcli.film.cells.balance.side_flow import outflow
+from frbcli.film.cells.balance.ends import FLOWS, outflow
 from frbcli.film.cells.data import SHEARED
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.linearised import film_at

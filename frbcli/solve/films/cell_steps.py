@@ -12,7 +12,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
-from frbcli.film.cells.balance.balances import FILLING, FLOWS
+from frbcli.film.cells.balance.ends import FILLING, FLOWS
 from frbcli.film.cells.balance.states import (
     CARRIED_GAS,
     FRACTION,

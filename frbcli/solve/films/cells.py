@@ -15,7 +15,8 @@ from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import EMPTY
 from frbcli.film.cavitation.law import ABOVE_KINK
-from frbcli.film.cells.balance.balances import CHANNELS_NET, CREATED, ENDS_NET, SUPPLY_NET, balances
+from frbcli.film.cells.balance.balances import balances
+from frbcli.film.cells.balance.ends import CHANNELS_NET, CREATED, ENDS_NET, SUPPLY_NET
 from frbcli.film.cells.balance.faces import film_loads
 from frbcli.film.cells.balance.grid_motion import GridMotion, gap_along, level
 from frbcli.film.cells.balance.newton_step import damp, imbalance, store_rates

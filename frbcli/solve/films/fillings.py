@@ -16,8 +16,8 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import LAW_NUMBERS
-from frbcli.film.cells.balance.balances import FILLING
 from frbcli.film.cells.balance.boundaries import RESPONSE
+from frbcli.film.cells.balance.ends import FILLING
 from frbcli.film.cells.balance.states import fill_openings
 from frbcli.film.cells.data import PASSED, record
 from frbcli.solve.stage.equations import lagrange

@@ -13,8 +13,8 @@ from typing import Any
 
 from frbcli.arrays import Array
 from frbcli.compiled import by_types, compiled, of_several, type_of
+from frbcli.film.cells.balance.ends import side_flow
 from frbcli.film.cells.balance.grid_motion import level
-from frbcli.film.cells.balance.side_flow import side_flow
 from frbcli.film.cells.cavity_edge import CellEnds
 from frbcli.film.cells.data import GIVEN_PRESSURE, OIL, VolumeFilms
 from frbcli.film.rectangles.end_flow import end_flow

@@ -19,7 +19,8 @@ from frbcli.film.cavitation.law import FilmOil, Law, Scales
 from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cavitation.table import SHIPPED
 from frbcli.film.cavitation.two_phase import Peeken, TwoPhase
-from frbcli.film.cells.balance.balances import FLOWS, GridMotion, balances
+from frbcli.film.cells.balance.balances import GridMotion, balances
+from frbcli.film.cells.balance.ends import FLOWS
 from frbcli.film.cells.balance.newton_step import film_newton
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import (

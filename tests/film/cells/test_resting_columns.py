@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from frbcli.case.reading.load import load_case
-from frbcli.film.cells.balance.balances import ENDS_NET
+from frbcli.film.cells.balance.ends import ENDS_NET
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, PRESSURE_SLOPE, RESTS
 from frbcli.film.cells.data import AREA

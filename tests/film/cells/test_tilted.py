@@ -12,7 +12,8 @@ from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds, S
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.balance.balances import FLOWS, GridMotion, balances
+from frbcli.film.cells.balance.balances import GridMotion, balances
+from frbcli.film.cells.balance.ends import FLOWS
 from frbcli.film.cells.balance.grid_motion import seen_by_grid
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, STATES, cell_states, follow_law
 from frbcli.film.cells.block_cyclic import ENTRIES

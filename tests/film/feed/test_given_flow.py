@@ -11,7 +11,7 @@ from frbcli import bearing_sheet, load_case
 from frbcli.case.schema import Case
 from frbcli.errors import FilmUnsolved
 from frbcli.film.cells.balance.boundaries import ALL, feed_at, limited, supply_pressure
-from frbcli.film.cells.balance.side_flow import outflow
+from frbcli.film.cells.balance.ends import outflow
 from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution
 from frbcli.film.cells.linearised import steady_force
 from frbcli.film.cells.loads import FilmLoads, loads

@@ -13,8 +13,8 @@ from frbcli import load_case, read_run, runup
 from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import RunFileError
-from frbcli.film.cells.balance.balances import FILLING, SUPPLY_NET
 from frbcli.film.cells.balance.boundaries import feed_at, supply_line
+from frbcli.film.cells.balance.ends import FILLING, SUPPLY_NET
 from frbcli.film.cells.data import PASSED
 from frbcli.film.cells.film import Motion
 from frbcli.film.cells.linearised import steady_solution

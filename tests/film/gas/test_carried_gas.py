@@ -12,7 +12,8 @@ from volume_films import ROTATION, section_of
 from frbcli.film.cavitation.bubbly import Bubbly
 from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cells.balance.balances import FLOWS, GAS_IN, GAS_OUT, GAS_RELEASED, GridMotion
+from frbcli.film.cells.balance.balances import GridMotion
+from frbcli.film.cells.balance.ends import FLOWS, GAS_IN, GAS_OUT, GAS_RELEASED
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,

@@ -18,7 +18,8 @@ from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.balance.balances import CREATED, FLOWS, INFLOW, OUTFLOW, GridMotion, balances
+from frbcli.film.cells.balance.balances import GridMotion, balances
+from frbcli.film.cells.balance.ends import CREATED, FLOWS, INFLOW, OUTFLOW
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.plain_diffusion import spreads
 from frbcli.film.cells.balance.states import STATES, cell_states, follow_law

@@ -14,7 +14,7 @@ from paths import DATA
 import frbcli
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
-from frbcli.film.cells.balance.balances import CREATED
+from frbcli.film.cells.balance.ends import CREATED
 from frbcli.film.cells.data import NOW, OIL, PASSED
 from frbcli.film.cells.film import Motion
 from frbcli.film.cells.loads import loads

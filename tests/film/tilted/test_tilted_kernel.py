@@ -11,7 +11,8 @@ from flows import oil_paths, path_layers
 from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import CellState, Law
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.balance.balances import COLUMNS, ENDS_NET, FLOWS, SUPPLY_NET, GridMotion, balances
+from frbcli.film.cells.balance.balances import COLUMNS, GridMotion, balances
+from frbcli.film.cells.balance.ends import ENDS_NET, FLOWS, SUPPLY_NET
 from frbcli.film.cells.balance.faces import film_loads
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, STATES, before_upstream

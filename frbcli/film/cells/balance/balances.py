@@ -10,15 +10,12 @@ Columns of cells are balanced some at a time, one cell after the other, so that 
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
-from frbcli.film.cavitation.compiled import wright_omega
-from frbcli.film.cells.balance.boundaries import BEND, PREFACTOR, STEEPNESS
 from frbcli.film.cells.balance.diffusion import spread_oil
+from frbcli.film.cells.balance.ends import CREATED, FILLING, FLOWS, INFLOW, OUTFLOW, SUPPLY_NET, flow_through_ends, take
 from frbcli.film.cells.balance.faces import (
     FaceFlows,
     OwnAndNext,
@@ -47,9 +44,7 @@ from frbcli.film.cells.data import (
     ALONG,
     AREA,
     AROUND,
-    BATHED,
     BY_ITSELF,
-    CLOSED,
     COS,
     EDGE,
     EDGE_COS,
@@ -60,10 +55,7 @@ from frbcli.film.cells.data import (
     FACE_COS,
     FACE_GAP,
     FACE_SIN,
-    FED,
-    FREE,
     GAP,
-    LENGTH,
     MIDDLES,
     SHARE,
     SIDES,
@@ -72,13 +64,6 @@ from frbcli.film.cells.data import (
     WIDTHS,
 )
 from frbcli.film.roughness.contact import flowing_cube, rough_flow, sheared_gap
-
-# Sums over the ends and the given cells: what flows in and out there, the net outflow through the ends and the net
-# supply by given cells and grooves; what channels of a ring bring net; free gas that comes in and leaves with the oil,
-# and what leaves the solution net, see gas/carry.py; oil created by artificial diffusion, see diffusion.py; and the
-# rate of the filling of openings with a flow-limited supply, see boundaries.py.
-INFLOW, OUTFLOW, ENDS_NET, SUPPLY_NET, CHANNELS_NET, GAS_IN, GAS_OUT, GAS_RELEASED, CREATED, FILLING, FLOWS = range(11)
-
 
 COLUMNS = 32  # that are balanced at a time: fewer cost a film of the time loop up to a twentieth in calls
 # Rows of these columns, one cell after the other, a column behind: FaceFlows around by pressures and by the surfaces,
@@ -106,105 +91,6 @@ RAISED_BY_GAP = RAISED + 3
     IN_BY_GAP,
     ROWS,
 ) = range(FLOW_ROWS, FLOW_ROWS + 15)
-
-
-@compiled(inline=True)
-def section_end(film: np.record, k: int, far: bool) -> tuple[int, int, int, float, float]:
-    """The end z = 0 of a section with k cells along, or z = 1: its kind, the last cell and the one beyond it, and how
-    the pressure slope there follows from the two, see EndSlope."""
-    if far:
-        return film.far.kind, k - 1, max(k - 2, 0), film.far.rise, film.far.bend
-    return film.near.kind, 0, min(1, k - 1), film.near.rise, film.near.bend
-
-
-def without_ends(film: np.record) -> np.record:
-    """A film of which no oil leaves but into its openings, to sum up what these take."""
-    closed = film.copy()
-    for end in (closed.near, closed.far):
-        if end.kind != FED:
-            end.kind = CLOSED
-    return closed
-
-
-@compiled(inline=True)
-def felt_at_end(last: float, beyond: float, bend: float, groove: float) -> tuple[float, float, float]:
-    """Pressure towards an end above the pressure of the groove there, or of the air, by a parabola through the last
-    cell and the one beyond it; and its derivatives by the pressures of the two."""
-    rise, change = last - groove, bend * (last - beyond)
-    by_last, by_beyond = 1.0 + bend, -bend
-    if abs(change) > BEND * abs(rise):
-        side = math.copysign(BEND, change) * math.copysign(1.0, rise) if rise != 0.0 else 0.0
-        change, by_last, by_beyond = side * rise, 1.0 + side, 0.0
-    return rise + change, by_last, by_beyond
-
-
-@compiled()
-def falls_to_air(
-    film: np.record, ring: Array, places: Array, pressures: Array, motion: GridMotion, far: bool, falls: Array
-) -> None:  # fmt: skip
-    """falls (m,) <- of the pressure from the last cells to an end, if it is free, times the steepness b of (4.37):
-    Wright's omega function, see boundaries.py. pressures: (m, k) of the cells."""
-    m, k = pressures.shape
-    steepness, z = STEEPNESS / film.scales.ambient, places[EDGES, k if far else 0]
-    kind, j, b, rise, bend = section_end(film, k, far)
-    if kind != FREE:
-        return
-    for i in range(m):
-        near, more = gap_along(ring[GAP, i], ring[SIN, i], ring[COS, i], motion)
-        cube, _ = flowing_cube(near + z * more, film.roughness)
-        felt, _, _ = felt_at_end(pressures[i, j], pressures[i, b], bend, 0.0)
-        falls[i] = math.log(PREFACTOR * steepness / (cube * film.aspect * rise)) + steepness * felt
-    for i in range(m):  # side by side
-        falls[i], _ = wright_omega(falls[i])
-
-
-@compiled(inline=True)
-def end_flow(
-    kind: int, last: float, beyond: float, conductance: float, bend: float, groove: float, steepness: float,
-    fall: float, bathed: float,
-) -> tuple[float, float, float, float]:  # fmt: skip
-    """(outflow, its derivatives by the pressures of the last cell and of the one beyond it, and by the conductance).
-
-    fall: at a free end, see falls_to_air; bathed: share of it that lies in a bath."""
-    felt, by_last, by_beyond = felt_at_end(last, beyond, bend, groove)
-    if kind == FREE and bathed < 1.0:
-        slope = conductance * fall / (1.0 + fall)
-        by_conductance = fall * fall / (steepness * (1.0 + fall))
-        out = conductance / steepness * fall
-        if bathed > 0.0:
-            free = 1.0 - bathed
-            slope = free * slope + bathed * conductance
-            out, by_conductance = free * out + bathed * conductance * felt, free * by_conductance + bathed * felt
-        return out, slope * by_last, slope * by_beyond, by_conductance
-    return conductance * felt, conductance * by_last, conductance * by_beyond, felt
-
-
-@compiled(inline=True)
-def flow_at_end(
-    film: np.record, ring: Array, places: Array, states: Array, motion: GridMotion, far: bool, falls: Array, i: int
-) -> tuple[float, float, float, float]:
-    """What leaves column i through an end, see end_flow, and its derivatives by the pressures of the last two cells and
-    by the gap. falls: see falls_to_air."""
-    k = states.shape[2]
-    kind, j, b, rise, bend = section_end(film, k, far)
-    groove, z = film.share * film.far.pressure if far else 0.0, places[EDGES, k if far else 0]
-    near, more = gap_along(ring[GAP, i], ring[SIN, i], ring[COS, i], motion)
-    (cube, slope), unit = flowing_cube(near + z * more, film.roughness), film.aspect * ring[LENGTH, i] * rise
-    flow, by_last, by_beyond, by_conductance = end_flow(
-        kind, states[PRESSURE, i, j], states[PRESSURE, i, b], cube * unit, bend, groove,
-        STEEPNESS / film.scales.ambient, falls[i], ring[BATHED, i],
-    )  # fmt: skip
-    return flow, by_last, by_beyond, by_conductance * slope * unit
-
-
-@compiled()
-def take(outflow: float, flows: Array) -> None:
-    """Openings take oil out of a film, or give it to it where it is less than 0."""
-    flows[SUPPLY_NET] -= outflow
-    if outflow > 0.0:
-        flows[OUTFLOW] += outflow
-    else:
-        flows[INFLOW] -= outflow
 
 
 @compiled()
@@ -440,46 +326,6 @@ def _carry_out_of_excess(
     take(outflow, flows)
 
 
-@compiled(makes_arrays=True)
-def _flow_through_ends(
-    film: np.record, ring: Array, cells: Array, places: Array, states: Array, motion: GridMotion, stencil: Array,
-    right: Array, flows: Array,
-) -> None:  # fmt: skip
-    m, k, falls = states.shape[1], states.shape[2], np.empty(states.shape[1])
-    for far in (False, True):
-        kind, j, b, _, _ = section_end(film, k, far)
-        if kind == CLOSED:
-            continue
-        falls_to_air(film, ring, places, states[PRESSURE], motion, far, falls)
-        z = places[EDGES, k if far else 0]
-        for i in range(m):
-            if cells[UNKNOWN, i, j] == 0.0 or rests(states, i):
-                continue
-            flow, by_last, by_beyond, by_gap = flow_at_end(film, ring, places, states, motion, far, falls, i)
-            by_gap *= motion.g
-            right[i, j, k + BY_ITSELF] -= flow
-            add_by_motion(right, i, j, z, motion.by_ends, -by_gap * ring[SIN, i], by_gap * ring[COS, i])
-            stencil[CENTRE, i, j] += by_last * states[PRESSURE_SLOPE, i, j]
-            if b > j:
-                stencil[ABOVE, i, j] += by_beyond * states[PRESSURE_SLOPE, i, b]
-            elif b < j:
-                stencil[BELOW, i, j] += by_beyond * states[PRESSURE_SLOPE, i, b]
-            leave(kind, flow, flows)
-
-
-@compiled()
-def leave(kind: int, flow: float, flows: Array) -> None:
-    """Oil leaves through an end of a kind, or comes in where the flow is less than 0."""
-    if kind == FED:
-        flows[SUPPLY_NET] -= flow
-    else:
-        flows[ENDS_NET] += flow
-    if flow > 0.0:
-        flows[OUTFLOW] += flow
-    else:
-        flows[INFLOW] -= flow
-
-
 @compiled()
 def hold_given(cells: Array, stencil: Array, right: Array, flows: Array, sides: int) -> None:
     """Cells with a given pressure keep it; what would leave them is their supply. sides: right-hand sides, the first
@@ -576,7 +422,7 @@ def balances(
         _carry_out_of_excess(ring, cells, places, states, motion, stencil, right, flows)
     if film.diffuses and film.length > 0.0:
         flows[CREATED] = spread_oil(film, ring, places, cells, states, motion, stencil, right)
-    _flow_through_ends(film, ring, cells, places, states, motion, stencil, right, flows)
+    flow_through_ends(film, ring, cells, places, states, motion, stencil, right, flows)
     hold_given(cells, stencil, right, flows, sides)
     if film.given > 0.0:
         flows[FILLING] = (film.given - flows[SUPPLY_NET]) / film.line

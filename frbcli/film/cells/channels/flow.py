@@ -14,7 +14,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.compiled import Indices, compiled
-from frbcli.film.cells.balance.balances import CHANNELS_NET
+from frbcli.film.cells.balance.ends import CHANNELS_NET
 from frbcli.film.cells.balance.faces import press_cells
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, pressure_of
 from frbcli.film.cells.block_cyclic import CENTRE

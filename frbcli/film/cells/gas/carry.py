@@ -16,21 +16,16 @@ from frbcli.compiled import compiled
 from frbcli.film.cells.balance.balances import (
     COLUMNS,
     DRAWN,
-    GAS_IN,
-    GAS_OUT,
-    GAS_RELEASED,
     PRESSED,
     RAISED,
     ROWS,
     edge_cube,
-    falls_to_air,
     flow_along,
     flow_around,
-    flow_at_end,
     meet_gaps,
     opening_rate,
-    section_end,
 )
+from frbcli.film.cells.balance.ends import GAS_IN, GAS_OUT, GAS_RELEASED, falls_to_air, flow_at_end, section_end
 from frbcli.film.cells.balance.grid_motion import GridMotion, gap_along
 from frbcli.film.cells.balance.states import CARRIED_GAS, FRACTION, FREE_GAS, PASSED_ON, PRESSURE, TURNOVER
 from frbcli.film.cells.data import AREA, CLOSED, COS, EDGE, EXCESS, GAP, MIDDLES, SHARE, SIN, UNKNOWN
@@ -143,13 +138,13 @@ def follow_oil(
         _pass_columns(film, ring, places, cells, states, motion, first, last, rows, paths)
         first = last
     for far in (False, True):
-        kind, j, _, _, _ = section_end(film, k, far)
-        if kind != CLOSED:
-            falls_to_air(film, ring, places, states[PRESSURE], motion, far, falls)
+        end = section_end(film, places, k, far)
+        if end.kind != CLOSED:
+            falls_to_air(end, ring, states[PRESSURE], motion, falls)
             for i in range(m):
-                if cells[UNKNOWN, i, j] != 0.0:
-                    flow, _, _, _ = flow_at_end(film, ring, places, states, motion, far, falls, i)
-                    outside(flow, i, j, paths)
+                if cells[UNKNOWN, i, end.last] != 0.0:
+                    flow, _, _, _ = flow_at_end(end, ring, states[PRESSURE], motion, falls[i], i)
+                    outside(flow, i, end.last, paths)
 
 
 @compiled()
