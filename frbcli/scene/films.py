@@ -32,10 +32,19 @@ from frbcli.errors import Fault
 from frbcli.film.cavitation.law import FilmOil, Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.channels.channel import Channel, FeedHole, channel_resistance
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.grid import run_grid
-from frbcli.film.gap import NO_BATH, Diffusion, Section, ends_at_ambient, smallest_gap, whole_width
+from frbcli.film.gap import (
+    NO_BATH,
+    Channel,
+    Diffusion,
+    FeedHole,
+    Section,
+    channel_resistance,
+    ends_at_ambient,
+    smallest_gap,
+    whole_width,
+)
 from frbcli.scene.gate.rule import ROTATION, SQUEEZE
 
 Pair = tuple[float, float]

@@ -19,11 +19,11 @@ from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cells.balance.ends import CHANNELS_NET
 from frbcli.film.cells.balance.plain import CellBalances
-from frbcli.film.cells.channels.channel import Channel, channel_resistance
-from frbcli.film.cells.channels.data import with_channels
+from frbcli.film.cells.channels import with_channels
 from frbcli.film.cells.data import OIL, PASSED, UNKNOWN, W, volume_films
 from frbcli.film.cells.film import Motion, VolumeFilm
 from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.gap import Channel, channel_resistance
 from frbcli.linear.stability import stability
 from frbcli.runs.films import oil_defect
 from frbcli.runs.march import control_of

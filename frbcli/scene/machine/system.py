@@ -18,7 +18,7 @@ from frbcli.case.schema import Case
 from frbcli.elements.pin import held_by_pins, pin_rows
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.penalty import Penalty
-from frbcli.film.cells.channels.data import with_channels
+from frbcli.film.cells.channels import with_channels
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.tilted_film import tilted_film

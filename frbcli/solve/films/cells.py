@@ -31,7 +31,7 @@ from frbcli.film.cells.balance.states import (
     rests,
 )
 from frbcli.film.cells.block_cyclic import solve_ring_at
-from frbcli.film.cells.channels.flow import ask_of_channels, exchange
+from frbcli.film.cells.channels import ask_of_channels, exchange
 from frbcli.film.cells.data import (
     ALL_SIDES,
     AREA,

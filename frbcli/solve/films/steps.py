@@ -30,7 +30,7 @@ from frbcli.arrays import Array
 from frbcli.compiled import Kernel, by_types, compiled, type_of
 from frbcli.dense import solve_dense
 from frbcli.film.cells.balance.states import follow_law
-from frbcli.film.cells.channels.flow import (
+from frbcli.film.cells.channels import (
     channel_pressures,
     feed_hole_pressure,
     follow_means,

@@ -1,1 +1,0 @@
-"""Channels that couple the two films of a ring hydraulically."""
