@@ -1,22 +1,17 @@
 """What bearings stand on: supports, squeeze film dampers, the housing.
 
-The support of a bearing: its shell is a body on springs and dampers, M u'' + C u' + K u = weight + what acts on it.
+- Support: the shell of a bearing is a body on springs and dampers, M u'' + C u' + K u = weight + what acts on it. Film
+  or coefficients act between the shaft, or the ring, and that body.
+- Squeeze film damper: the shell of a bearing is a body that moves in a film, on a centring spring, without turning. The
+  film is one of the machine's, between the shell and its seat; the spring acts in parallel.
+- Rigid housing: it moves by q = [x, y, a, b], its centre of mass and the slopes of its axis in the planes x z and y z;
+  a bearing at a distance l of the centre moves by (x + l a, y + l b).
+- Elastic housing: it moves by its modes of unit modal mass, a bearing by the sum over k of u_k q_k, with
 
-Film or coefficients act between the shaft, or the ring, and that body. Equal bearings of a symmetric rotor move alike:
-one body represents both, with twice their mass, stiffness and damping.
+      q_k'' + 2 zeta_k omega_k q_k' + omega_k^2 q_k = sum over bearings of u_k . F.
 
-A squeeze film damper: the shell of a bearing is a body that moves in a film, on a centring spring, without turning.
-
-The film is one of the machine's films, between the shell and its seat; the spring acts in parallel. Equal bearings of a
-symmetric rotor move alike: one body represents both shells.
-
-A rigid housing moves by q = [x, y, a, b]: its centre of mass, and the slopes of its axis in the planes x z and y z; a
-bearing at a distance l of the centre moves by (x + l a, y + l b). Both ends of a symmetric rotor move alike, and so its
-housing by q = [x, y]. An elastic housing moves by its modes of unit modal mass,
-
-    q_k'' + 2 zeta_k omega_k q_k' + omega_k^2 q_k = sum over bearings of u_k . F
-
-and a bearing by the sum over k of u_k q_k.
+Equal bearings of a symmetric rotor move alike: one body represents both shells, with twice their mass, stiffness and
+damping, and the housing has q = [x, y] alone.
 """
 
 from __future__ import annotations

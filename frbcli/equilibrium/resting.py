@@ -1,11 +1,8 @@
 """The static equilibrium of a machine at a given speed: K q = f_static + sum over films of m P^T F(P q, 0, omega).
 
-Newton's method runs on all degrees of freedom of the rotor. Floating rings have their speeds as unknowns instead of
-their angles, and the torques on them as equations (ring_speed.py).
-
-Newton's method for rest: the journals move until no force is left over on them.
-
-A machine, a journal under a load and a film in any form differ in the forces that are left over alone.
+Newton's method runs on all degrees of freedom of the rotor until no force is left over. Floating rings have their
+speeds as unknowns instead of their angles, and the torques on them as equations (ring_speed.py). The same search serves
+a machine, a journal under a load and a film in any form: they differ in the forces that are left over alone.
 """
 
 from __future__ import annotations

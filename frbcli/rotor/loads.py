@@ -1,17 +1,13 @@
-"""Loads of a rotor: weight, unbalance, over the order, over speed and time.
+"""What acts on a rotor beside its films: loads, linear parts of elements, and its speed.
 
-Loads on a machine that change with the angle of its rotor or with time, in addition to the unbalance.
-
-A load is two columns of forces on all degrees of freedom, each times a factor that is a function of time and angle.
-
-Order and choice among numbers that are equal but for round-off: by a rule, the same on every processor.
+- Loads are in addition to weight and unbalance, and change with the angle of the rotor or with time. A load is two
+  columns of forces on all degrees of freedom, each times a factor that is a function of time and angle.
+- Linear parts are forces -K d - C d' - M d'' that elements put on the rotor, constant or over its speed.
+- The prescribed speed is piecewise linear in time, with the angle that belongs to it.
 
 Equal eigenvalues, motions on a circle and shapes that are symmetric leave to round-off which of them comes first or is
-the largest. Here numbers that are as near to each other as EQUAL count as one, and the next rule decides.
-
-Linear parts of a rotor: forces -K d - C d' - M d'' that elements put on it, constant or over its speed.
-
-The prescribed rotor speed: piecewise linear in time, and the angle that belongs to it.
+the largest. Numbers that are as near to each other as EQUAL count as one here, and the next rule decides, so that
+order and choice are the same on every processor.
 """
 
 from __future__ import annotations

@@ -1,18 +1,12 @@
-"""Journal and shell that touch: smooth surfaces on an elastic shell, and rubbing ones with derivatives of their forces.
+"""Journal and shell that touch.
 
-Smooth surfaces on an elastic shell, with a journal pressed into it: what its film feels, and what pushes it back.
-
-The time loop has the same in solve/stage/forces.py.
-
-The asperities of one film, which act in parallel to it: force with derivatives, and loads.
-
-Force and torques of the summits of a film with all their derivatives, for machines whose rings turn.
-
-A ring that sticks and slips follows the motion: the torques on journal and shell then count as the force does, by
-displacement, velocity and both speeds. The time loop, which has the speeds from stage to stage, takes rub alone.
-
-What a gap between rough surfaces lets flow and how it resists sliding, compiled; see flow_factors.py. Gaps h and
-roughness over the clearance; a roughness of 0: smooth surfaces.
+- Smooth surfaces on an elastic shell: what the film of a journal pressed into it feels, and what pushes it back.
+  The time loop has the same in solve/stage/forces.py.
+- Rough surfaces: the asperities of a film act in parallel to it, with force, friction, torques and all derivatives. A
+  ring that sticks and slips follows the motion, so that the torques on journal and shell count as the force does. The
+  time loop, which has the speeds from stage to stage, takes `rub` alone.
+- What a gap between rough surfaces lets flow and how it resists sliding, compiled; see flow_factors.py. Gaps h and
+  roughness are over the clearance; a roughness of 0: smooth surfaces.
 """
 
 from __future__ import annotations

@@ -1,20 +1,12 @@
-"""Cells of finite-volume films: what their number makes of the error of a run, and the fewest that hold a target.
+"""Cells of finite-volume films: the fewest that hold a target, and what a plan expects before anything is solved.
 
 The error of the eccentricities before a whirl grows is the sum of the errors of the cells around and along, measured on
 the shipped cases and some changes of them against 144 x 10 or 192 x 6 cells (docs/accuracy.md).
 
-The eccentricity that a plan expects, with its profiles and the short bearing.
-
-What the theory of the short bearing knows of a film before anything is solved: the error of its force, how a journal
-falls, and where it rests.
-
-The largest eccentricity that a run-up is expected to reach before a whirl, from static load and unbalance.
-
-A journal without mass in a short film falls from where it starts, in the first revolutions, while
-the oil turns it; later it rests under its weight and unbalance. Openings, supply pressure and mass are left out.
-scipy is not asked for the two numbers, since its import takes longer than a whole plan.
-
-The speed of the rotor over time: run-up and run-down.
+The eccentricity that a run-up is expected to reach before a whirl follows from static load and unbalance by the theory
+of the short bearing. A journal without mass falls from where it starts, in the first revolutions, while the oil turns
+it; later it rests under its weight and unbalance. Openings, supply pressure and mass are left out. scipy is not asked
+for the two numbers, since its import takes longer than a whole plan.
 """
 
 from __future__ import annotations

@@ -1,13 +1,11 @@
 """The plan of a case: what has to be modelled for it, what is left out, and why.
 
 All choices that the program makes for a run are made here, with their reasons; settings of the case take precedence.
+The expected error comes with the plan; a run states its own. Cases of thrust bearings alone have a plan of their own.
 
-Its expected error comes with it; a run states its own. Cases of thrust bearings alone have a plan of their own.
-
-The difference to a second, coarser run shows how uncertain the results of a run are.
-
-On the same cells the error differs by a factor of 10 to 20 between machines with rings (docs/accuracy.md). Two short
-runs from the beginning, on the cells of the plan and on more of them, show it.
+The plan of a second, coarser run is here, too: the difference shows how uncertain the results of a run are. On the same
+cells the error differs by a factor of 10 to 20 between machines with rings (docs/accuracy.md), which two short runs
+from the beginning show, on the cells of the plan and on more of them.
 """
 
 from __future__ import annotations

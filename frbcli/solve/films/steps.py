@@ -1,19 +1,15 @@
-"""The films at both ends of a stage and of a step of the time loop, compiled.
+"""The films at both ends of a stage and of a step of the time loop, compiled; what they do in between is in forces.py.
 
-Each kind of films has its own answers. What the films do in between is in forces.py.
-
-Which kind of films the time loop has: asked here alone, by the types of the films, when the loop is compiled.
+Which kind of films the time loop has is asked here alone, by the types of the films, when the loop is compiled:
 
 - none at all, an empty tuple;
 - a tuple of FilmData, one per film: force and derivatives follow from where the journal is and how it moves;
 - VolumeFilms, all films together: cells with unknowns of their own, see cells.py;
 - TiltedVolumes, all films together, each of which the loop sees at both ends of its bearing, see tilted.py.
 
-Coupled channels in one stage of the time loop, compiled: the films of a ring solved as one.
-
-Each film is solved with further right-hand sides, one per channel: what a unit of pressure in it does. The pressures of
-all channels then follow from one small system (Schur's complement), which leaves equations for the journals alone, now
-with the force of a film depending on the journals of both films of its ring.
+Channels couple the films of a ring, which are solved as one: each film with further right-hand sides, one per channel,
+for what a unit of pressure in it does. The pressures of all channels then follow from one small system (Schur's
+complement). Equations for the journals alone are left, with the force of a film depending on both films of its ring.
 """
 
 from __future__ import annotations

@@ -1,22 +1,18 @@
-"""States of cells, what is carried upstream, and a step of Newton's method.
+"""States of the cells of one film by its cavitation law, compiled: pressure, oil fraction, what is carried, what rests.
 
-Pressures and oil fractions of the cells of one film by its cavitation law, compiled.
-
-The oil fraction that the surfaces carry through the faces of cells: of second order where it is smooth.
-
-At a face it is theta_u + L(a, b): theta_u of the cell upstream of the face, a the difference from the cell before that
-one, b the difference across the face. L = 0 (upwind) has an error of first order, which acts as a diffusion of the oil;
-L = b / 2 is of second order, but overshoots at fronts. Between these chooses the limiter of van Albada,
+The oil fraction that the surfaces carry through a face is theta_u + L(a, b): theta_u of the cell upstream of the face,
+a the difference from the cell before that one, b the difference across the face. L = 0 (upwind) has an error of first
+order, which acts as a diffusion of the oil; L = b / 2 is of second order, but overshoots at fronts. Between these
+chooses the limiter of van Albada,
 
     L = a b (a + b) / (2 (a^2 + b^2)) where a b > 0, else 0.
 
 The oil fraction before the upstream cell is held at a guess while Newton's method solves: so the equations keep their
 two neighbours around, and their derivatives are exact. Oil that is compressed is no part of it, see balances.py.
 
-Columns of cells with constant oil: cavities at p_cav that turn with the oil, between others like them. Compiled.
-
-Nothing flows through the faces of such a column, whatever its cells hold, so that H theta stays what it was. Its cells
-feel no others, and Newton's step of each is a division. A film that empties consists mostly of them.
+A column of cells rests if it is a cavity at p_cav that turns with the oil, between others like it. Nothing flows
+through its faces, so that H theta stays what it was; it feels no other cells, and Newton's step of each of its cells is
+a division. A film that empties consists mostly of such columns.
 """
 
 from __future__ import annotations
