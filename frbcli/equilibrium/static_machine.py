@@ -14,6 +14,7 @@ import numpy as np
 
 from frbcli.arrays import Array, Complex
 from frbcli.case.schema import Case
+from frbcli.elements.ball import BallBearingElement
 from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator, constant_film, dynamic_film, followed, modes
 from frbcli.equilibrium.linearised import (
     LEAST,
@@ -45,6 +46,7 @@ from frbcli.scene.planning.film_choice import Plan
 from frbcli.scene.planning.plan import make_plan
 from frbcli.thermal.model import FilmHeat, SteadyHeat, steady_heat
 
+TURN = 2.0 * math.pi
 CLOSE_ON_CELLS = replace(SEARCH, negligible=1e-8)  # temperatures settle to 1e-6 K, 1e-8 of a viscosity
 
 
@@ -289,8 +291,15 @@ class StaticMachines:
         """The machine, without heat."""
         return self._static.system
 
-    def _check_axis(self, omega: float) -> None:
-        """Raises NotConverged where an axial load is carried by no film."""
+    def _check_speed(self, omega: float) -> None:
+        """Raises NotConverged where an axial load is carried by no film, or a pair of balls is not known in tilt."""
+        for element in BallBearingElement.of(self._case):
+            known = math.inf if element.tilt is None else float(element.tilt.speeds[-1])
+            if omega > known * (1.0 + 1e-9):
+                raise NotConverged(
+                    f"The stiffness in tilt of the bearing {element.given.name} is known up to {known / TURN:.4g} Hz, "
+                    f"and not at {omega / TURN:.4g} Hz. Give the case another speed.to."
+                )
         if self._case.loads_a_collar:
             from frbcli.elements.collar import collar_at_rest, collar_of  # films on pads take long to import
 
@@ -300,7 +309,7 @@ class StaticMachines:
     def at(self, omega: float, near: MachineAtRest | None = None, with_error: bool = True) -> MachineAtRest:
         """The machine at omega rad/s, sought from one near it; with_error: whether errors of the coefficients are
         wanted, else they are NaN. Raises NotConverged."""
-        self._check_axis(omega)
+        self._check_speed(omega)
         path = near.path if near else ()
         warm, static = None, self._static
         if self._heat is not None:

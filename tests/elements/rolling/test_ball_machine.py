@@ -281,6 +281,26 @@ def test_an_opposed_pair_holds_the_shaft_in_tilt(arrangement: str) -> None:
     np.testing.assert_allclose(whirls(on_a_pair(arrangement))[:4], expected, rtol=5e-3)
 
 
+@pytest.mark.parametrize("speed_Hz", [151.0, 720.0, 1500.0, 3900.0])
+def test_a_pair_holds_the_shaft_in_tilt_at_any_speed(speed_Hz: float) -> None:
+    """Within and beyond the speeds of the case, as the moments of both rows have it; light preloads are lost early."""
+    case = on_a_pair("back-to-back", preload="10 N").with_settings("speed.to = 1000 Hz")
+    (element,), omega, step = BallBearingElement.of(case), TURN * speed_Hz, 1e-6
+    row, moment = replace(element.rings, rows=1, turning=False), 0.0
+    for place, sense in ((-0.5 * APART, 1.0), (0.5 * APART, -1.0)):
+        above, below = (moment_of_a_row(row, place, sense, omega, each)[1] for each in (step, -step))
+        moment += (above - below) / (2.0 * step)
+    assert element.tilt is not None
+    assert element.tilt.at(omega)[0][3, 3] == pytest.approx(moment, rel=1e-3)
+
+
+def test_a_pair_is_not_taken_for_known_at_speeds_far_beyond_the_case() -> None:
+    case = on_a_pair("back-to-back").with_settings("speed.to = 1000 Hz")
+    known, beyond = stability(case, [3999.0, 4001.0]).points
+    assert known.rests
+    assert "known up to 4000 Hz, and not at 4001 Hz" in beyond.problem
+
+
 @pytest.mark.parametrize(("arrangement", "locating", "end"), [
     ("back-to-back", "right", "left"), ("face-to-face", "right", "right"), ("back-to-back", "left", "right"),
 ])  # fmt: skip
