@@ -45,7 +45,7 @@ from frbcli.rotor.loads import LinearPart, lines
 from frbcli.rotor.port import ANGLE, D_X, D_Y, F_X, F_Y, GRIP, SPEED, TORQUE, XX, XY, YX, YY, ForceLaw
 from frbcli.units import display
 
-SMALL_APPROACH = 1e-6  # m
+SMALL_APPROACH, ROUND = 1e-6, 1e-15  # m: the latter a deflection that is round-off of the places
 PER_TURN = 1e6 * 30.0 / math.pi  # nu n in mm^2/s rpm of nu omega in m^2/s rad/s
 RATING_PRESSURE = 4.2e9  # Pa, of a static load rating (ISO 76): a dent of 1e-4 of the ball diameter
 MEAN_POINTS = 24  # at which balls that are spread evenly are summed, at least; twice as many balls are as good
@@ -203,9 +203,6 @@ class BallBearing:
         """The rows of a pair at omega rad/s with its rings in the middle, each held where the load has moved it."""
         one, moved = replace(self, rows=1, thrust=(0.0, 0.0), pair=False), self.in_middle(omega)[1]
         return replace(one, offset=self.offset + moved), replace(one, offset=self.offset - moved)
-
-
-ROUND = 1e-15  # m, below which a deflection is round-off of the places
 
 
 @dataclass(frozen=True)
@@ -442,17 +439,20 @@ class BallBearingElement(MachineElement):
     def plan_line(self, site: Site) -> Line:
         return self.line
 
+    def pressed(self, omega: float) -> float:
+        """What the axial load leaves of the preload at omega rad/s, N; infinite where it does not act on it."""
+        if self.given.locating is None or self.rings.pair:
+            return math.inf
+        rows = 1 if self.given.arrangement in OPPOSED else self.rings.rows
+        return rows * (self.rings.preload or 0.0) + self.thrust[0] + self.thrust[1] * omega**2
+
     def faults(self) -> list[Fault]:
         """An axial load that takes the preload away."""
-        constant, square = self.thrust
-        rows = 1 if self.given.arrangement in OPPOSED else self.rings.rows
-        left = rows * (self.rings.preload or 0.0) + constant
-        least = min(left, left + square * self.top**2)
-        if self.given.locating is None or self.rings.pair or least > 0.0:
+        if (least := min(self.pressed(0.0), self.pressed(self.top))) > 0.0:
             return []
         other = "left" if self.given.locating == "right" else "right"
-        parted = f"pulls the rings of the bearing {self.given.name} apart"
-        problem = f"{parted}: {display(least, 'N')} of its preload is left."
+        left = f"{display(least, 'N')} of its preload is left"
+        problem = f"pulls the rings of the bearing {self.given.name} apart: {left}."
         remedy = f'Write {self.key}.locating = "{other}", or raise its preload.'
         return [Fault("axial.load", "", None, problem, remedy)]
 

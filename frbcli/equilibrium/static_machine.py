@@ -46,7 +46,6 @@ from frbcli.scene.planning.film_choice import Plan
 from frbcli.scene.planning.plan import make_plan
 from frbcli.thermal.model import FilmHeat, SteadyHeat, steady_heat
 
-TURN = 2.0 * math.pi
 CLOSE_ON_CELLS = replace(SEARCH, negligible=1e-8)  # temperatures settle to 1e-6 K, 1e-8 of a viscosity
 
 
@@ -292,14 +291,10 @@ class StaticMachines:
         return self._static.system
 
     def _check_speed(self, omega: float) -> None:
-        """Raises NotConverged where an axial load is carried by no film, or a pair of balls is not known in tilt."""
+        """Raises NotConverged where an axial load is carried by no film, or parts the rings of a ball bearing, and
+        where a pair of rows is not known in tilt."""
         for element in BallBearingElement.of(self._case):
-            known = math.inf if element.tilt is None else float(element.tilt.speeds[-1])
-            if omega > known * (1.0 + 1e-9):
-                raise NotConverged(
-                    f"The stiffness in tilt of the bearing {element.given.name} is known up to {known / TURN:.4g} Hz, "
-                    f"and not at {omega / TURN:.4g} Hz. Give the case another speed.to."
-                )
+            check_balls(element, omega)
         if self._case.loads_a_collar:
             from frbcli.elements.collar import collar_at_rest, collar_of  # films on pads take long to import
 
@@ -341,6 +336,16 @@ class StaticMachines:
         dynamic = _dynamic(static.system, omega, at_rest) if self._memory else ()
         before = () if near is None else near.path
         return MachineAtRest(static, omega, films, at_rest, warm, tuple(counted), dynamic, before)
+
+
+def check_balls(bearing: BallBearingElement, omega: float) -> None:
+    """Raises NotConverged at a speed in rad/s at which a ball bearing has no force, or none that is known."""
+    tilt, name, speed = bearing.tilt, bearing.given.name, omega / (2.0 * math.pi)
+    if bearing.pressed(omega) <= 0.0:
+        raise NotConverged(f"The axial load pulls the rings of the bearing {name} apart at {speed:.4g} Hz.")
+    if tilt is not None and omega > tilt.speeds[-1] * (1.0 + 1e-9):
+        known = f"is known up to {tilt.speeds[-1] / (2.0 * math.pi):.4g} Hz, and not at {speed:.4g} Hz"
+        raise NotConverged(f"The stiffness in tilt of the bearing {name} {known}. Give the case another speed.to.")
 
 
 def _foreseen(omega: float, known: Sequence[tuple[float, FilmsAtRest]]) -> RestingPosition:

@@ -281,6 +281,37 @@ def test_an_opposed_pair_holds_the_shaft_in_tilt(arrangement: str) -> None:
     np.testing.assert_allclose(whirls(on_a_pair(arrangement))[:4], expected, rtol=5e-3)
 
 
+def test_rotors_rest_where_all_balls_but_three_are_lifted() -> None:
+    """A light preload and fast balls: the first guess of the place would lean on a single ball, which holds nothing
+    across. Natural frequencies as the stiffness where the bearing carries the load."""
+    mass, speed_Hz, load = 2.0, 520.0, 11.665
+    bearing = {"balls": 10, "ball_diameter": "5 mm", "pitch_diameter": "28 mm", "contact_angle": "25 deg",
+               "ball_material": "silicon nitride", "preload": "4.288 N"}  # fmt: skip
+    case = on_balls(bearing, load, mass)
+    (element,) = BallBearingElement.of(case)
+
+    def carried(way: float) -> float:
+        return float(at_displacement(element.rings, np.array([0.0, -way]), TURN * speed_Hz).force[1]) - load
+
+    rest = at_displacement(element.rings, np.array([0.0, -brentq(carried, 0.0, 3e-5)]), TURN * speed_Hz)
+    assert np.count_nonzero(rest.balls.inner_load) == 3
+    (point,) = stability(case, [speed_Hz]).points
+    expected = np.sqrt(2.0 * np.sort(np.diag(rest.stiffness)) / mass)
+    np.testing.assert_allclose(np.sort(point.eigenvalues.imag)[-2:], expected, rtol=1e-6)
+
+
+def test_a_load_that_grows_with_the_speed_parts_rings_beyond_the_speeds_of_the_case() -> None:
+    """60 N of preload against 40 N times the square of the speed over 1000 Hz are gone at 1225 Hz."""
+    axial = {"load": {"at": "1000 Hz", "load": "-40 N"}}
+    case = on_a_pair("tandem", row_distance=None, preload="30 N", locating="right", axial=axial)
+    held, parted = stability(case, [1220.0, 1230.0]).points
+    assert held.rests
+    assert "pulls the rings of the bearing pair apart at 1230 Hz" in parted.problem
+    held, parted = ball_bearing_sheet(case, [1220.0, 1230.0], [1.0]).points
+    assert not held.problem
+    assert parted.problem
+
+
 @pytest.mark.parametrize("speed_Hz", [151.0, 720.0, 1500.0, 3900.0])
 def test_a_pair_holds_the_shaft_in_tilt_at_any_speed(speed_Hz: float) -> None:
     """Within and beyond the speeds of the case, as the moments of both rows have it; light preloads are lost early."""
