@@ -421,11 +421,9 @@ class BallBearingElement(MachineElement):
         left = row_in_tilt(both[0], -0.5 * distance, sense, omega)
         return np.add(left, row_in_tilt(both[1], 0.5 * distance, -sense, omega)) * [distance, 1.0]
 
-    @property
-    def linear(self) -> LinearPart:
-        """Usual stiffness and damping, for estimates: without speed, a little beyond the clearance."""
-        stiffness = at_displacement(self.rings, np.array([0.0, -BallForce(self.rings).length]), 0.0).stiffness
-        return LinearPart.of(0.5 * float(np.trace(stiffness)) * np.eye(2), self.given.damping * np.eye(2))
+    def stiffness(self, omega: float) -> Array:
+        place = np.array([0.0, -BallForce(self.rings).length])  # a little beyond the clearance
+        return at_displacement(self.rings, place, omega).stiffness
 
     def parts(self, site: Site) -> Parts:
         link = self.link(site)

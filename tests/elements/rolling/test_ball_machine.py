@@ -178,6 +178,10 @@ def test_a_preload_that_dents_the_balls_is_remarked(preload: Any) -> None:
 def test_natural_modes_on_springs_have_no_balls() -> None:
     with pytest.raises(InputError, match="has balls"):
         frbcli.natural_modes(on_balls(A, LOAD), "bearings")
+    film = {"kind": "single-film", "name": "film", "width": "20 mm", "diameter": "25 mm", "clearance": "35 um"}
+    settings = {"bearing": [film, {"kind": "ball", "name": "balls", **A}]}
+    with pytest.raises(InputError, match="has balls"):
+        frbcli.natural_modes(frbcli.load_case("jeffcott").with_settings(settings), 1e7)
 
 
 def test_signals_of_balls_do_not_depend_on_how_a_run_is_cut() -> None:
