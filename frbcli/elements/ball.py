@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache, partial
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -41,11 +41,11 @@ from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.errors import Fault
 from frbcli.materials import ROLLING, Elastic
 from frbcli.rotor.assembly import COORDINATES, PLANE, Link
-from frbcli.rotor.loads import LinearPart
+from frbcli.rotor.loads import LinearPart, lines
 from frbcli.rotor.port import ANGLE, D_X, D_Y, F_X, F_Y, GRIP, SPEED, TORQUE, XX, XY, YX, YY, ForceLaw
 from frbcli.units import display
 
-SMALL_APPROACH = 1e-6  # m
+SMALL_APPROACH, ROUND = 1e-6, 1e-15  # m: the latter a deflection that is round-off of the places
 PER_TURN = 1e6 * 30.0 / math.pi  # nu n in mm^2/s rpm of nu omega in m^2/s rad/s
 RATING_PRESSURE = 4.2e9  # Pa, of a static load rating (ISO 76): a dent of 1e-4 of the ball diameter
 MEAN_POINTS = 24  # at which balls that are spread evenly are summed, at least; twice as many balls are as good
@@ -191,15 +191,18 @@ class BallBearing:
         """(m,) for the kernels: nothing is known yet."""
         return np.zeros(RINGS + KNOWN * self.numbers.rows * self.points)
 
+    def in_middle(self, omega: float) -> tuple[BallNumbers, float]:
+        """The numbers with one ball for all, which are alike with the rings in the middle, and the displacement in m
+        along the axis at omega rad/s."""
+        of, memory = self.numbers, self.memory
+        of = of._replace(points=1, share=of.share * of.points)
+        ball_bearing_force(of, 0.0, 0.0, omega, 0.0, memory)
+        return of, of.preload if of.held else float(memory[0])
+
     def apart(self, omega: float) -> tuple[BallBearing, BallBearing]:
         """The rows of a pair at omega rad/s with its rings in the middle, each held where the load has moved it."""
-        memory = self.memory
-        ball_bearing_force(self.numbers, 0.0, 0.0, omega, 0.0, memory)
-        one, moved = replace(self, rows=1, thrust=(0.0, 0.0), pair=False), float(memory[0])
+        one, moved = replace(self, rows=1, thrust=(0.0, 0.0), pair=False), self.in_middle(omega)[1]
         return replace(one, offset=self.offset + moved), replace(one, offset=self.offset - moved)
-
-
-ROUND = 1e-15  # m, below which a deflection is round-off of the places
 
 
 @dataclass(frozen=True)
@@ -254,7 +257,8 @@ def balls_of(of: BallNumbers, memory: Array, cage: float) -> Balls:
 
 
 TILTED = np.arange(2, 4)  # among the COORDINATES
-SPEEDS = 17  # at which the stiffness in tilt is computed
+FIRST_SPEEDS = np.linspace(0.0, 4.0, 17)  # of the table of the stiffness in tilt, over the highest one of the case
+LINE_ERROR = 1e-3  # of lines between its speeds
 
 
 def row_in_tilt(row: BallBearing, place: float, sense: float, omega: float) -> tuple[float, float]:
@@ -265,11 +269,8 @@ def row_in_tilt(row: BallBearing, place: float, sense: float, omega: float) -> t
     The centre of the inner groove lies at R across and z along the axis from the point. A slope t moves it by z t
     across and by -R t cos(psi) along the axis, and turns the lever of the force of each ball.
     """
-    of, memory = row.numbers, row.memory
-    ball_bearing_force(of, 0.0, 0.0, omega, 0.0, memory)
-    z = of.preload if of.held else float(memory[0])
-    centrifugal, rest = of_balls(of, omega)
-    q_a, q_r, aa, ar, rr = ball(of, of.axial + z, of.radial, centrifugal, rest, memory, RINGS)
+    of, z = row.in_middle(omega)
+    q_a, q_r, aa, ar, rr = ball(of, of.axial + z, of.radial, *of_balls(of, omega), row.memory, RINGS)
     across = 0.5 * row.pitch_diameter + of.inner * math.cos(row.contact_angle)
     along = place + sense * of.inner * math.sin(row.contact_angle)
     half = 0.5 * row.balls
@@ -407,31 +408,22 @@ class BallBearingElement(MachineElement):
     @property
     def tilt(self) -> LinearPart | None:
         """Stiffness and damping of two opposed rows in tilt over the speed, with the ring in the middle."""
-        distance = self.given.row_distance
-        if distance is None:
-            return None
+        return None if self.given.row_distance is None else tilt_over_speed(self, self.given.row_distance)
+
+    def in_tilt(self, distance: float, omega: float) -> Array:
+        """(2,) of both rows by a slope of the shaft at omega rad/s, see row_in_tilt: the force times their distance,
+        and the moment, in N m."""
         one = replace(self.rings, rows=1, turning=False)
         both = [replace(row, rows=1, turning=False) for _, row in self.rows] if len(self.rows) > 1 else [one, one]
         sense = 1.0 if self.given.arrangement == "back-to-back" else -1.0  # of the left row, which then is the first
-        speeds = np.linspace(0.0, self.top, SPEEDS if self.top else 1)
-        stiffness, damping = np.zeros((len(speeds), 4, 4)), np.zeros((len(speeds), 4, 4))
-        damping[:, TILTED, TILTED] = 0.25 * self.given.damping * distance**2
-        for matrix, omega in zip(stiffness, speeds, strict=True):
-            if one.pair:
-                both = list(one.apart(float(omega))[:: int(sense)])
-            left = row_in_tilt(both[0], -0.5 * distance, sense, float(omega))
-            right = row_in_tilt(both[1], 0.5 * distance, -sense, float(omega))
-            force, moment = np.add(left, right)
-            matrix[0, 3] = matrix[3, 0] = force  # tilt_y is the slope of x, tilt_x that of -y
-            matrix[1, 2] = matrix[2, 1] = -force
-            matrix[TILTED, TILTED] = moment
-        return LinearPart(speeds, stiffness, damping, np.zeros_like(damping))
+        if one.pair:
+            both = list(one.apart(omega)[:: int(sense)])
+        left = row_in_tilt(both[0], -0.5 * distance, sense, omega)
+        return np.add(left, row_in_tilt(both[1], 0.5 * distance, -sense, omega)) * [distance, 1.0]
 
-    @property
-    def linear(self) -> LinearPart:
-        """Usual stiffness and damping, for estimates: without speed, a little beyond the clearance."""
-        stiffness = at_displacement(self.rings, np.array([0.0, -BallForce(self.rings).length]), 0.0).stiffness
-        return LinearPart.of(0.5 * float(np.trace(stiffness)) * np.eye(2), self.given.damping * np.eye(2))
+    def stiffness(self, omega: float) -> Array:
+        place = np.array([0.0, -BallForce(self.rings).length])  # a little beyond the clearance
+        return at_displacement(self.rings, place, omega).stiffness
 
     def parts(self, site: Site) -> Parts:
         link = self.link(site)
@@ -445,17 +437,20 @@ class BallBearingElement(MachineElement):
     def plan_line(self, site: Site) -> Line:
         return self.line
 
+    def pressed(self, omega: float) -> float:
+        """What the axial load leaves of the preload at omega rad/s, N; infinite where it does not act on it."""
+        if self.given.locating is None or self.rings.pair:
+            return math.inf
+        rows = 1 if self.given.arrangement in OPPOSED else self.rings.rows
+        return rows * (self.rings.preload or 0.0) + self.thrust[0] + self.thrust[1] * omega**2
+
     def faults(self) -> list[Fault]:
         """An axial load that takes the preload away."""
-        constant, square = self.thrust
-        rows = 1 if self.given.arrangement in OPPOSED else self.rings.rows
-        left = rows * (self.rings.preload or 0.0) + constant
-        least = min(left, left + square * self.top**2)
-        if self.given.locating is None or self.rings.pair or least > 0.0:
+        if (least := min(self.pressed(0.0), self.pressed(self.top))) > 0.0:
             return []
         other = "left" if self.given.locating == "right" else "right"
-        parted = f"pulls the rings of the bearing {self.given.name} apart"
-        problem = f"{parted}: {display(least, 'N')} of its preload is left."
+        left = f"{display(least, 'N')} of its preload is left"
+        problem = f"pulls the rings of the bearing {self.given.name} apart: {left}."
         remedy = f'Write {self.key}.locating = "{other}", or raise its preload.'
         return [Fault("axial.load", "", None, problem, remedy)]
 
@@ -474,6 +469,19 @@ class BallBearingElement(MachineElement):
         reason = f"Hertz contacts, centrifugal force of the balls, {angle}, {preload}"
         tilt = "" if self.tilt is not None else ", moments of the rings"
         return "bearings", value, f"{reason}; left out: gyroscopic moments of the balls{tilt}{friction}"
+
+
+@lru_cache(maxsize=8)
+def tilt_over_speed(element: BallBearingElement, distance: float) -> LinearPart:
+    """See BallBearingElement.tilt; distance: of the rows, m."""
+    table = lines(partial(element.in_tilt, distance), element.top * FIRST_SPEEDS, LINE_ERROR)
+    stiffness, damping = np.zeros((len(table), 4, 4)), np.zeros((len(table), 4, 4))
+    damping[:, TILTED, TILTED] = 0.25 * element.given.damping * distance**2
+    for matrix, (force, moment) in zip(stiffness, table.values(), strict=True):
+        matrix[0, 3] = matrix[3, 0] = force / distance  # tilt_y is the slope of x, tilt_x that of -y
+        matrix[1, 2] = matrix[2, 1] = -force / distance
+        matrix[TILTED, TILTED] = moment
+    return LinearPart(np.array(list(table)), stiffness, damping, np.zeros_like(damping))
 
 
 def _thrust(case: Case, bearing: BallBearingKeys) -> tuple[float, float]:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import ClassVar, Self
 
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.rotor.assembly import GROUND, Body, Link, NodeForce, PortLink
@@ -71,6 +72,11 @@ class MachineElement(ABC):
     def linear(self) -> LinearPart | None:
         """Its coefficients over the speed, where these hold the shaft as a bearing does."""
         return None
+
+    def stiffness(self, omega: float) -> Array | None:
+        """(c, c) its stiffness at omega rad/s, where it holds the shaft as a bearing does; of one that is not linear a
+        usual one, for estimates."""
+        return None if self.linear is None else self.linear.at(omega)[0]
 
     def parts(self, site: Site) -> Parts:
         """What it adds to the machine."""

@@ -14,6 +14,7 @@ import numpy as np
 
 from frbcli.arrays import Array, Complex
 from frbcli.case.schema import Case
+from frbcli.elements.ball import BallBearingElement
 from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator, constant_film, dynamic_film, followed, modes
 from frbcli.equilibrium.linearised import (
     LEAST,
@@ -289,8 +290,11 @@ class StaticMachines:
         """The machine, without heat."""
         return self._static.system
 
-    def _check_axis(self, omega: float) -> None:
-        """Raises NotConverged where an axial load is carried by no film."""
+    def _check_speed(self, omega: float) -> None:
+        """Raises NotConverged where an axial load is carried by no film, or parts the rings of a ball bearing, and
+        where a pair of rows is not known in tilt."""
+        for element in BallBearingElement.of(self._case):
+            check_balls(element, omega)
         if self._case.loads_a_collar:
             from frbcli.elements.collar import collar_at_rest, collar_of  # films on pads take long to import
 
@@ -300,7 +304,7 @@ class StaticMachines:
     def at(self, omega: float, near: MachineAtRest | None = None, with_error: bool = True) -> MachineAtRest:
         """The machine at omega rad/s, sought from one near it; with_error: whether errors of the coefficients are
         wanted, else they are NaN. Raises NotConverged."""
-        self._check_axis(omega)
+        self._check_speed(omega)
         path = near.path if near else ()
         warm, static = None, self._static
         if self._heat is not None:
@@ -332,6 +336,16 @@ class StaticMachines:
         dynamic = _dynamic(static.system, omega, at_rest) if self._memory else ()
         before = () if near is None else near.path
         return MachineAtRest(static, omega, films, at_rest, warm, tuple(counted), dynamic, before)
+
+
+def check_balls(bearing: BallBearingElement, omega: float) -> None:
+    """Raises NotConverged at a speed in rad/s at which a ball bearing has no force, or none that is known."""
+    tilt, name, speed = bearing.tilt, bearing.given.name, omega / (2.0 * math.pi)
+    if bearing.pressed(omega) <= 0.0:
+        raise NotConverged(f"The axial load pulls the rings of the bearing {name} apart at {speed:.4g} Hz.")
+    if tilt is not None and omega > tilt.speeds[-1] * (1.0 + 1e-9):
+        known = f"is known up to {tilt.speeds[-1] / (2.0 * math.pi):.4g} Hz, and not at {speed:.4g} Hz"
+        raise NotConverged(f"The stiffness in tilt of the bearing {name} {known}. Give the case another speed.to.")
 
 
 def _foreseen(omega: float, known: Sequence[tuple[float, FilmsAtRest]]) -> RestingPosition:

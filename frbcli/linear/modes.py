@@ -125,9 +125,9 @@ def natural_modes(
     Raises
     ------
     InputError
-        With a stiffness: if bearings have supports, if it is not greater than 0, or if there are not as many as
-        bearings; with "bearings" if these have films or a stiffness that differs with the direction. If a speed is
-        negative.
+        With a stiffness: if bearings have supports, or balls beside films, if it is not greater than 0, or if there are
+        not as many as bearings; with "bearings" if these have films, balls or a stiffness that differs with the
+        direction. If a speed is negative.
 
     Examples
     --------
@@ -238,18 +238,23 @@ def _check_held(case: Case) -> None:
     remedy = "Leave the stiffness out, or take the damped modes, frb stability --shapes SPEED, which have supports."
     if faults := support_faults(case, what, remedy):
         raise case.refused(*faults)
+    if case.bearings:  # the stiffness is of these alone
+        _check_springs(case, ("ball",), "Take the damped modes, frb stability --shapes SPEED.")
+
+
+def _check_springs(case: Case, but: Sequence[str], remedy: str) -> None:
+    """Raises InputError where bearings of a case are of these kinds, which are no springs."""
+    for key, bearing in zip(case.bearing_keys, case.placed_bearings, strict=True):
+        if bearing.kind in but:
+            what = "balls" if bearing in case.elements else "films"
+            problem = f"has {what}, whose stiffness follows from the static equilibrium."
+            raise case.refused(Fault(f"{key}.kind", bearing.kind, None, problem, remedy))
 
 
 def _check_own(case: Case) -> None:
     """Raises InputError where the bearings of a case are no springs that are the same in all directions."""
     remedy = "Take the damped modes, frb stability --shapes SPEED, or give a stiffness."
-    resting = [*case.bearings, *(bearing for bearing in case.elements if bearing.kind == "ball")]
-    if resting:
-        keyed = zip(case.bearing_keys, case.placed_bearings, strict=True)
-        key, kind = next((key, bearing.kind) for key, bearing in keyed if bearing in resting)
-        what = "films" if case.bearings else "balls"
-        problem = f"has {what}, whose stiffness follows from the static equilibrium."
-        raise case.refused(Fault(f"{key}.kind", kind, None, problem, remedy))
+    _check_springs(case, ["ball", *(bearing.kind for bearing in case.bearings)], remedy)
     for element in GivenCoefficients.of(case):
         k = element.linear.stiffness
         if not np.allclose(k, 0.5 * np.trace(k, axis1=1, axis2=2)[:, None, None] * np.eye(2), rtol=1e-9):

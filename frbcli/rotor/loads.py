@@ -12,8 +12,9 @@ order and choice are the same on every processor.
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Self
 
@@ -254,6 +255,24 @@ def summed(parts: Sequence[LinearPart]) -> LinearPart | None:
         np.sum([[matrices[i] for matrices in rows] for rows in evaluated], axis=0) for i in range(3)
     )
     return LinearPart(speeds, stiffness, damping, mass)
+
+
+NARROW = 1e-4  # over the largest speed: steps of a table that are not halved any more
+
+
+def lines(at: Callable[[float], Array], speeds: Array, error: float) -> dict[float, Array]:
+    """Values of a function at speeds, ascending from the given ones, and at as many between as leave lines between them
+    off by no more than `error` of the largest one there."""
+    table = {speed: at(speed) for speed in speeds.tolist()}
+    spans = list(itertools.pairwise(table))
+    while spans:
+        low, high = spans.pop()
+        middle = 0.5 * (low + high)
+        table[middle] = at(middle)
+        off = float(np.abs(table[middle] - 0.5 * (table[low] + table[high])).max())
+        if off > error * float(np.abs(table[middle]).max()) and high - low > NARROW * speeds[-1]:
+            spans += [(low, middle), (middle, high)]
+    return dict(sorted(table.items()))
 
 
 def no_part(size: int) -> LinearPart:

@@ -210,16 +210,22 @@ def settled(
     """
     reason: NotConverged | None = None
     for q in starts:
+        moved = np.zeros(rotor.size)
         for iteration in range(ITERATIONS):
             try:
                 there, position = rest(tangent(rotor, omega, q, compiled), q)
             except NotConverged as error:
                 reason = reason or error
-                break
+                if not moved.any():
+                    break
+                moved = 0.5 * moved  # a step to where a port holds nothing is too long
+                q = q - moved
+                continue
             moved = there - q
             if all(float(np.abs(port.place @ moved).max()) < step * port.law.length for port in rotor.ports):
                 return position
-            q = q + (moved if iteration < ITERATIONS // 2 else 0.5 * moved)  # to and fro over a corner
+            moved = moved if iteration < ITERATIONS // 2 else 0.5 * moved  # to and fro over a corner
+            q = q + moved
     name = rotor.ports[0].name.replace("_", " ")
     raise reason or NotConverged(f"No static equilibrium: the {name} does not settle. Start a run in the centre.")
 

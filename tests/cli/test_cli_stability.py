@@ -96,6 +96,42 @@ def test_springs_of_films_without_direct_stiffness_are_left_out_and_told(capsys:
     assert "no direct stiffness" in capsys.readouterr().out
 
 
+ROLLING = """
+[rotor]
+kind = "turbocharger"
+[[shaft]]
+length = "200 mm"
+diameter = "20 mm"
+[speed]
+from = "100 Hz"
+to = "900 Hz"
+duration = "1 s"
+""" + "".join(f"""
+[[bearing]]
+kind = "ball"
+name = "{name}"
+position = "{position}"
+balls = 9
+ball_diameter = "4 mm"
+pitch_diameter = "18 mm"
+contact_angle = "25 deg"
+preload = "50 N"
+""" for name, position in (("front", "20 mm"), ("rear", "180 mm")))
+
+
+def test_natural_frequencies_on_balls_are_left_to_the_damped_modes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Balls hold the shaft as they do at a static equilibrium, softer by far at this speed than standing."""
+    (tmp_path / "rolling.toml").write_text(ROLLING)
+    words = ["stability", str(tmp_path / "rolling.toml"), "--no-picture", "--speed", "900 Hz"]
+    assert frb([*words, "--json"]) == 0
+    (free,) = json.loads(capsys.readouterr().out)["natural_frequencies"]
+    assert not free["stiffness_N_m"]
+    assert frb(words) == 0
+    assert "--shapes SPEED" in " ".join(capsys.readouterr().out.split())
+
+
 def test_speeds_that_are_asked_for_are_all_shown(capsys: pytest.CaptureFixture[str]) -> None:
     speeds = [word for speed in range(101, 126) for word in ("--speed", f"{speed} Hz")]
     assert frb(["stability", "jeffcott", "--no-picture", "--set", "film.theory=short", *speeds]) == 0

@@ -99,7 +99,7 @@ def command(
     for modes in natural:
         show_modes(terminal, modes)
     if natural and _beside_bearings(analysis):
-        terminal.sentence("On supports, the modes belong to the whole machine: frb stability --shapes SPEED.")
+        terminal.sentence("On supports or balls, the modes are of the whole machine: frb stability --shapes SPEED.")
     elif len(natural) == 1 and analysis.points[-1].rests:
         at = terminal.speeds.words(analysis.points[-1].speed_Hz)
         terminal.result(f"No natural frequencies on films at {at}: one has no direct stiffness.")
@@ -164,7 +164,8 @@ def _springs(analysis: Stability) -> list[tuple[tuple[float, ...] | None, float]
 def _beside_bearings(analysis: Stability) -> bool:
     from frbcli.scene.machine.rotor import beside_bearings
 
-    return bool(beside_bearings(analysis.case))
+    balls = any(bearing.kind == "ball" for bearing in analysis.case.elements)
+    return balls or bool(beside_bearings(analysis.case))
 
 
 def _sentence(analysis: Stability, unit: SpeedUnit) -> str:

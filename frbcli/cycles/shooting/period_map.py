@@ -253,8 +253,9 @@ class PeriodMap:
 
     def _gaps(self, q: Array, bodies: Array) -> Array:
         """H in the cells of films between rotor and rings at angles (1 + rings,), see Films.gaps."""
-        films, d = self.system.films, (self.journals @ q + self.standing) / self.clearances[:, None]
+        films = self.system.films
         angles = np.repeat(self.turned @ bodies, films.stations)
+        d = ((self.journals @ q + self.standing) / self.clearances[:, None])[: len(angles)]  # without films: none
         c, s = np.cos(angles)[:, None], np.sin(angles)[:, None]
         return films.gaps(np.hstack([c * d[:, :1] + s * d[:, 1:], c * d[:, 1:] - s * d[:, :1]]))
 

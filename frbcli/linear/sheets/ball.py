@@ -24,7 +24,7 @@ from frbcli.case.schema import Case
 from frbcli.columns import Table, Tabular, table_of
 from frbcli.elements.ball import BallBearing, BallBearingElement, Balls, RestingRings, at_displacement
 from frbcli.elements.ball_force import BallNumbers, ball_bearing_force
-from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
+from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines, check_balls
 from frbcli.errors import Fault, NotConverged
 from frbcli.linear.columns import BALL_SHEET
 from frbcli.scene.gate.gate import require
@@ -177,6 +177,7 @@ def _state(element: BallBearingElement, load: Array, speed: float) -> BallState:
     name, rings = element.given.name, replace(element.rings, turning=True)
     omega, line = 2.0 * math.pi * speed, math.atan2(load[0], -load[1]) if load.any() else 0.0
     try:
+        check_balls(element, omega)
         rest = under_load(rings, load, omega, line)
     except NotConverged as error:
         return BallState(name, speed, load, str(error))

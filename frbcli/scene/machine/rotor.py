@@ -177,8 +177,7 @@ def element_springs(case: Case, omega: float) -> Array:
     """(e,) N/m of each bearing without a film at omega rad/s, then N m of a collar that is held in tilt, and of rows of
     balls: the mean of the direct stiffness of both directions, as far as it holds the shaft; cross-coupling, damping
     and mass are left out."""
-    parts = [element.linear for element in elements_of(case)]
-    stiffness = [part.at(omega)[0] for part in parts if part is not None]
+    stiffness = [each for element in elements_of(case) if (each := element.stiffness(omega)) is not None]
     tilts = (element.tilt for element in BallBearingElement.of(case))
     stiffness += [part.at(omega)[0][len(PLANE) :, len(PLANE) :] for part in tilts if part is not None]
     return np.array([max(0.5 * float(np.trace(each)), 0.0) for each in stiffness])

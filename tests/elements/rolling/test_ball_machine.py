@@ -178,6 +178,10 @@ def test_a_preload_that_dents_the_balls_is_remarked(preload: Any) -> None:
 def test_natural_modes_on_springs_have_no_balls() -> None:
     with pytest.raises(InputError, match="has balls"):
         frbcli.natural_modes(on_balls(A, LOAD), "bearings")
+    film = {"kind": "single-film", "name": "film", "width": "20 mm", "diameter": "25 mm", "clearance": "35 um"}
+    settings = {"bearing": [film, {"kind": "ball", "name": "balls", **A}]}
+    with pytest.raises(InputError, match="has balls"):
+        frbcli.natural_modes(frbcli.load_case("jeffcott").with_settings(settings), 1e7)
 
 
 def test_signals_of_balls_do_not_depend_on_how_a_run_is_cut() -> None:
@@ -279,6 +283,57 @@ def test_an_opposed_pair_holds_the_shaft_in_tilt(arrangement: str) -> None:
     inertia = MASS * (3.0 * RADIUS**2 + LENGTH**2) / 12.0
     expected = np.sort([math.sqrt(rest.stiffness[0, 0] / MASS)] * 2 + [math.sqrt(tilt / inertia)] * 2)
     np.testing.assert_allclose(whirls(on_a_pair(arrangement))[:4], expected, rtol=5e-3)
+
+
+def test_rotors_rest_where_all_balls_but_three_are_lifted() -> None:
+    """A light preload and fast balls: the first guess of the place would lean on a single ball, which holds nothing
+    across. Natural frequencies as the stiffness where the bearing carries the load."""
+    mass, speed_Hz, load = 2.0, 520.0, 11.665
+    bearing = {"balls": 10, "ball_diameter": "5 mm", "pitch_diameter": "28 mm", "contact_angle": "25 deg",
+               "ball_material": "silicon nitride", "preload": "4.288 N"}  # fmt: skip
+    case = on_balls(bearing, load, mass)
+    (element,) = BallBearingElement.of(case)
+
+    def carried(way: float) -> float:
+        return float(at_displacement(element.rings, np.array([0.0, -way]), TURN * speed_Hz).force[1]) - load
+
+    rest = at_displacement(element.rings, np.array([0.0, -brentq(carried, 0.0, 3e-5)]), TURN * speed_Hz)
+    assert np.count_nonzero(rest.balls.inner_load) == 3
+    (point,) = stability(case, [speed_Hz]).points
+    expected = np.sqrt(2.0 * np.sort(np.diag(rest.stiffness)) / mass)
+    np.testing.assert_allclose(np.sort(point.eigenvalues.imag)[-2:], expected, rtol=1e-6)
+
+
+def test_a_load_that_grows_with_the_speed_parts_rings_beyond_the_speeds_of_the_case() -> None:
+    """60 N of preload against 40 N times the square of the speed over 1000 Hz are gone at 1225 Hz."""
+    axial = {"load": {"at": "1000 Hz", "load": "-40 N"}}
+    case = on_a_pair("tandem", row_distance=None, preload="30 N", locating="right", axial=axial)
+    held, parted = stability(case, [1220.0, 1230.0]).points
+    assert held.rests
+    assert "pulls the rings of the bearing pair apart at 1230 Hz" in parted.problem
+    held, parted = ball_bearing_sheet(case, [1220.0, 1230.0], [1.0]).points
+    assert not held.problem
+    assert parted.problem
+
+
+@pytest.mark.parametrize("speed_Hz", [151.0, 720.0, 1500.0, 3900.0])
+def test_a_pair_holds_the_shaft_in_tilt_at_any_speed(speed_Hz: float) -> None:
+    """Within and beyond the speeds of the case, as the moments of both rows have it; light preloads are lost early."""
+    case = on_a_pair("back-to-back", preload="10 N").with_settings("speed.to = 1000 Hz")
+    (element,), omega, step = BallBearingElement.of(case), TURN * speed_Hz, 1e-6
+    row, moment = replace(element.rings, rows=1, turning=False), 0.0
+    for place, sense in ((-0.5 * APART, 1.0), (0.5 * APART, -1.0)):
+        above, below = (moment_of_a_row(row, place, sense, omega, each)[1] for each in (step, -step))
+        moment += (above - below) / (2.0 * step)
+    assert element.tilt is not None
+    assert element.tilt.at(omega)[0][3, 3] == pytest.approx(moment, rel=1e-3)
+
+
+def test_a_pair_is_not_taken_for_known_at_speeds_far_beyond_the_case() -> None:
+    case = on_a_pair("back-to-back").with_settings("speed.to = 1000 Hz")
+    known, beyond = stability(case, [3999.0, 4001.0]).points
+    assert known.rests
+    assert "known up to 4000 Hz, and not at 4001 Hz" in beyond.problem
 
 
 @pytest.mark.parametrize(("arrangement", "locating", "end"), [
