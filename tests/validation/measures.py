@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import hashlib
 import math
 from collections.abc import Sequence
@@ -10,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from paths import rows_of
 from scipy.linalg import eigh, null_space
 
 from frbcli.case.reading.load import load_case
@@ -23,8 +23,6 @@ from frbcli.runs.run import runup
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
-
-DATA = Path(__file__).parent.parent / "data"
 
 RISEN = 0.6  # eccentricity beyond which the journal has left its resting position, ...
 SETTLED_s = 2.0  # ... after this time: a slow rotor rests there, too
@@ -176,6 +174,4 @@ def _force_error(film: FilmData, clearance: float, row: dict[str, str]) -> float
 
 
 def _rows(name: str) -> list[dict[str, str]]:
-    with (DATA / name).open(encoding="utf-8") as file:
-        table = csv.DictReader(line for line in file if not line.startswith("#"))
-        return [row for row in table if row["cavitation"] == "half-sommerfeld"]
+    return [row for row in rows_of(name) if row["cavitation"] == "half-sommerfeld"]

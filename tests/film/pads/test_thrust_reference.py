@@ -3,18 +3,16 @@
 
 from __future__ import annotations
 
-import csv
-
 import numpy as np
 import pytest
-from paths import DATA
+from paths import rows_of
 
 from frbcli.case.reading.load import case_from_dict
 from frbcli.case.schema import Case
 from frbcli.linear.sheets.thrust import thrust_sheet
 
 REFERENCE_ERROR = 3e-4
-ROWS = list(csv.DictReader((DATA / "thrust-tapered-land.csv").read_text(encoding="utf-8").splitlines()))
+ROWS = rows_of("thrust-tapered-land.csv")
 # pads, taper in um, angle of the taper in deg, radii in mm, angle of a pad in deg, viscosity in Pa s, speed in Hz
 BEARINGS = {"A": (4, 20.0, 50.0, 5.0, 11.0, 75.0, 8e-3, 2000.0), "B": (6, 40.0, 40.0, 15.0, 30.0, 50.0, 12e-3, 600.0)}
 
