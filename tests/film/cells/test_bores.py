@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from differences import differences
 
 from frbcli.film.cavitation.conditions import Elrod, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import Law
@@ -105,7 +106,7 @@ def test_force_is_of_second_order_and_the_same_wherever_bores_lie(law: Law, ecce
 def test_a_journal_rests_where_the_plan_expects_it(law: Law, eccentricity: float) -> None:
     """What the force on 48 x 6 cells is off by moves a journal at rest by less than half of the error that the plan
     expects of them; its bores lie beside the narrowest gap."""
-    beside, step = TURN / (2 * COUNT), 2e-3
+    beside = TURN / (2 * COUNT)
 
     def pushed(cells: int, x: float = 0.0, y: float = 0.0, shift: float = 0.0) -> np.ndarray:
         """Force on a journal at (x, -eccentricity + y), turned with its bores by `shift` and back."""
@@ -114,9 +115,7 @@ def test_a_journal_rests_where_the_plan_expects_it(law: Law, eccentricity: float
         f = force_of(bored(beside + shift), cells, cells // 8, law, Motion(d, (0.0, 0.0), 942.0))
         return np.array([c * f[0] + s * f[1], c * f[1] - s * f[0]])
 
-    by_x = pushed(96, x=step) - pushed(96, x=-step)
-    by_y = pushed(96, y=step) - pushed(96, y=-step)
-    stiffness = np.column_stack([by_x, by_y]) / (2.0 * step)
+    stiffness = differences(lambda at: pushed(96, *at), (0.0, 0.0), 2e-3)
     finer, finest = pushed(144), pushed(192)
     limit = finest + (finest - finer) / ((192 / 144) ** 2 - 1.0)
     moved = [

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from differences import differences
 
 from frbcli.case.reading.load import load_case
 from frbcli.film.cells.film import Motion, VolumeFilm
@@ -34,12 +35,10 @@ def force(of: VolumeFilm, d: tuple[float, float] = PLACE, v: tuple[float, float]
 def test_derivatives_are_those_of_the_force(law: str) -> None:
     of, nudge = film(law, (48, 6)), 1e-5
     found, clearance = force(of), film(law, (48, 6)).section.clearance
-    for name, size, derivative in (("d", nudge, found.by_displacement), ("v", 300.0 * nudge, found.by_velocity)):
-        middle = {"d": np.array(PLACE), "v": np.zeros(2)}[name]
-        for column, unit in enumerate(np.eye(2)):
-            ahead, behind = (force(of, **{name: tuple(middle + side * size * unit)}).force for side in (1.0, -1.0))
-            slope = (ahead - behind) / (2.0 * size * clearance)
-            assert np.abs(derivative[:, column] - slope).max() < 1e-5 * np.abs(derivative).max()
+    by_d = differences(lambda d: force(of, d=tuple(d)).force, PLACE, nudge)
+    by_v = differences(lambda v: force(of, v=tuple(v)).force, (0.0, 0.0), 300.0 * nudge)
+    for derivative, slope in ((found.by_displacement, by_d), (found.by_velocity, by_v)):
+        assert np.abs(derivative - slope / clearance).max() < 1e-5 * np.abs(derivative).max()
 
 
 @pytest.mark.parametrize("law", ["reynolds", "penalty"])

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from differences import differences
 
 from frbcli.errors import NotConverged
 from frbcli.film.cavitation.conditions import HalfSommerfeld, Reynolds, Sommerfeld
@@ -35,18 +36,9 @@ def test_derivatives_are_those_of_differences(section: Section, law: Law) -> Non
     film = film_of(section, law)
     found = tilted_force(film, PLACE, RATE, TOTAL)
     scale = np.outer(SIZE, SIZE)
-    by_place, by_rate = np.empty((2, 4, 4))
-    for i, unit in enumerate(np.eye(4)):
-        step = 4e-6 * SIZE[i]
-        ahead, behind = (
-            tilted_force(film, PLACE + side * step * unit, RATE, TOTAL, found.field).force for side in (1.0, -1.0)
-        )
-        by_place[:, i] = (ahead - behind) / (2.0 * step)
-        step *= TOTAL
-        ahead, behind = (
-            tilted_force(film, PLACE, RATE + side * step * unit, TOTAL, found.field).force for side in (1.0, -1.0)
-        )
-        by_rate[:, i] = (ahead - behind) / (2.0 * step)
+    step = 4e-6 * SIZE
+    by_place = differences(lambda d: tilted_force(film, d, RATE, TOTAL, found.field).force, PLACE, step)
+    by_rate = differences(lambda v: tilted_force(film, PLACE, v, TOTAL, found.field).force, RATE, TOTAL * step)
     for exact, difference in ((found.by_displacement, by_place), (found.by_velocity, by_rate)):
         assert np.abs(scale * (exact - difference)).max() < 1e-7 * np.abs(scale * difference).max()
 

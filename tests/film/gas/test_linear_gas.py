@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from differences import differences
 from volume_films import section_of
 
 from frbcli.bearing_tests.history import march
@@ -54,13 +55,11 @@ def test_at_rest_it_is_the_derivative_of_the_force_of_films_that_have_settled(
 ) -> None:
     film = film_of(Bubbly(0.1, 0.02, air(section_of(supply)), *times), supply)
 
-    def settled(x: float, y: float) -> np.ndarray:
-        found = FilmSolver(film).steady(Motion((x, y), (0.0, 0.0), OMEGA), upwind=True)
-        return np.array(force(film, found.state.pressure))
+    def settled(d: np.ndarray) -> tuple[float, float]:
+        found = FilmSolver(film).steady(Motion(tuple(d), (0.0, 0.0), OMEGA), upwind=True)
+        return force(film, found.state.pressure)
 
-    (x, y), step = PLACE, 1e-5
-    by_x, by_y = settled(x + step, y) - settled(x - step, y), settled(x, y + step) - settled(x, y - step)
-    expected = -np.stack([by_x, by_y], axis=1) / (2.0 * step * film.section.clearance)
+    expected = -differences(settled, PLACE, 1e-5) / film.section.clearance
     found = stiffness_at(linear_film(film, film.section.clearance * np.array(PLACE), OMEGA), 0.0)
     assert found == pytest.approx(expected, abs=1e-5 * np.abs(expected).max())
 

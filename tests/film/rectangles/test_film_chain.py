@@ -7,10 +7,10 @@ import math
 
 import numpy as np
 import pytest
+from differences import differences
 from films import rectangular
 from paths import DATA
 
-from frbcli.arrays import Array
 from frbcli.film.gap import AxialGroove, Section
 from frbcli.film.grid import Mesh, axial_modes, axial_vertices
 from frbcli.film.rectangles.chain import chain_grid, element_matrices, mode_fields
@@ -19,7 +19,6 @@ from frbcli.film.rectangles.film_force import FilmData
 
 CLEARANCE = 40e-6
 MESH = Mesh(6, 48)
-AXIS = np.eye(2)
 
 
 def grooved(pressure: float, count: int = 1, position: float = 0.0) -> Section:
@@ -120,19 +119,9 @@ def test_derivatives_are_those_of_the_force(cavitation: str, pressure: float) ->
     place, velocity, omega = CLEARANCE * np.array([0.4, -0.5]), CLEARANCE * np.array([30.0, -80.0]), 400.0
     exact = evaluate(film, CLEARANCE, place, velocity, omega)
     step = 1e-5 * CLEARANCE
-
-    def differences(of_place: float, of_velocity: float) -> Array:
-        columns = []
-        for unit in AXIS:
-            ahead = evaluate(film, CLEARANCE, place + of_place * unit, velocity + of_velocity * unit, omega).force
-            behind = evaluate(film, CLEARANCE, place - of_place * unit, velocity - of_velocity * unit, omega).force
-            columns.append((ahead - behind) / (2 * (of_place + of_velocity)))
-        return np.stack(columns, axis=1)
-
-    for measured, stated in (
-        (differences(step, 0.0), exact.by_displacement),
-        (differences(0.0, 400 * step), exact.by_velocity),
-    ):
+    by_place = differences(lambda d: evaluate(film, CLEARANCE, d, velocity, omega).force, place, step)
+    by_rate = differences(lambda v: evaluate(film, CLEARANCE, place, v, omega).force, velocity, 400 * step)
+    for measured, stated in ((by_place, exact.by_displacement), (by_rate, exact.by_velocity)):
         assert measured == pytest.approx(stated, abs=1e-6 * float(np.abs(stated).max()))
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from differences import differences
 from scipy.integrate import quad
 
 from frbcli.film.cavitation.conditions import Elrod, Sommerfeld
@@ -65,7 +66,7 @@ def test_stress_is_that_of_the_local_gaps_and_of_what_they_press(x: float) -> No
 
 @pytest.mark.parametrize("x", GAPS)
 def test_kernels_are_the_equations_and_their_derivatives(x: float) -> None:
-    h, step = SIGMA * x, 1e-7 * SIGMA
+    h = SIGMA * x
     (factor, by_h), (cube, cube_by_h) = rough_flow(h, SIGMA), flowing_cube(h, SIGMA)
     carried, carried_by_h = sheared_gap(h, SIGMA, 3.0)
     assert factor == pytest.approx(pressure_flow(np.array(x)), rel=1e-13)
@@ -75,9 +76,8 @@ def test_kernels_are_the_equations_and_their_derivatives(x: float) -> None:
     complex_h = h + 1e-30j
     exact = (complex_h**3 * (1.0 - 0.90 * np.exp(-0.56 * complex_h / SIGMA))).imag / 1e-30
     assert cube_by_h == pytest.approx(exact, rel=1e-12)
-    ahead, behind = (np.array(rough_flow(y, SIGMA) + sheared_gap(y, SIGMA, 3.0)) for y in (h + step, h - step))
-    found = (ahead - behind) / (2.0 * step)
-    assert (by_h, carried_by_h) == pytest.approx((found[0], found[2]), rel=1e-6, abs=1e-7)
+    found = differences(lambda y: (rough_flow(y[0], SIGMA)[0], sheared_gap(y[0], SIGMA, 3.0)[0]), [h], 1e-7 * SIGMA)
+    assert (by_h, carried_by_h) == pytest.approx(found[:, 0], rel=1e-6, abs=1e-7)
     assert flowing_cube(h, 0.0) == pytest.approx((h**3, 3.0 * h**2), rel=1e-14)
     assert stress_factor(h, 0.0) == 1.0
 
@@ -106,23 +106,17 @@ def test_a_rough_journal_carries_more_oil_and_a_rough_shell_less(share: float) -
 
 
 def test_forces_have_their_derivatives() -> None:
-    section, motion, step = rough(0.5, 0.1), Motion((0.3, -0.6), (4.0, 2.0), OMEGA), 1e-6
+    section, motion = rough(0.5, 0.1), Motion((0.3, -0.6), (4.0, 2.0), OMEGA)
     film = film_of(section, Sommerfeld(), motion.d)
     solver = FilmSolver(film)
     found = settled_force(solver, motion, solver.steady(motion))
 
-    def force(x: float, y: float) -> np.ndarray:
-        moved = replace(motion, d=(x, y))
-        return np.array(loads(film, moved, FilmSolver(film).steady(moved)).force)
+    def force(d: np.ndarray) -> tuple[float, float]:
+        moved = replace(motion, d=tuple(d))
+        return loads(film, moved, FilmSolver(film).steady(moved)).force
 
-    x, y = motion.d
-    slopes = (
-        (force(x + step, y) - force(x - step, y)) / (2.0 * step * section.clearance),
-        (force(x, y + step) - force(x, y - step)) / (2.0 * step * section.clearance),
-    )
-    np.testing.assert_allclose(
-        found.by_displacement, np.column_stack(slopes), atol=1e-7 * abs(found.by_displacement).max()
-    )
+    slopes = differences(force, motion.d, 1e-6) / section.clearance
+    np.testing.assert_allclose(found.by_displacement, slopes, atol=1e-7 * abs(found.by_displacement).max())
 
 
 def test_oil_is_conserved() -> None:

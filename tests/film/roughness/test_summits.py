@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from differences import differences
 
 from frbcli.film.roughness.asperities import (
     FLAT,
@@ -91,10 +92,6 @@ def test_integrals_over_a_bearing(roughness: float, eccentricity: float) -> None
     assert (found.normal, found.radial) == pytest.approx((normal, radial), rel=2e-7)
 
 
-def moved(rough: Asperities, e: np.ndarray, v: np.ndarray, slip: float) -> np.ndarray:
-    return np.array(rub(rough, 0, C, *e, *v, slip, SHELL_SPEED)[:2])
-
-
 @pytest.mark.parametrize("slip", [0.02, 600.0])
 @pytest.mark.parametrize("angle", [-1.5, 0.4])
 def test_derivatives_are_those_of_the_force(angle: float, slip: float) -> None:
@@ -102,12 +99,10 @@ def test_derivatives_are_those_of_the_force(angle: float, slip: float) -> None:
     e, v = 0.975 * C * np.array([math.cos(angle), math.sin(angle)]), np.array([1e-4, -3e-4])
     found = rub(rough, 0, C, *e, *v, slip, SHELL_SPEED)
     by_place, by_rate = np.array(found[2:6]).reshape(2, 2), np.array(found[6:10]).reshape(2, 2)
-    for column, unit in enumerate(np.eye(2)):
-        step, pace = 1e-5 * C, 1e-7
-        place = (moved(rough, e + step * unit, v, slip) - moved(rough, e - step * unit, v, slip)) / (2 * step)
-        rate = (moved(rough, e, v + pace * unit, slip) - moved(rough, e, v - pace * unit, slip)) / (2 * pace)
-        np.testing.assert_allclose(by_place[:, column], place, rtol=1e-5, atol=1e-6 * abs(by_place).max())
-        np.testing.assert_allclose(by_rate[:, column], rate, rtol=1e-6, atol=1e-6 * abs(by_rate).max() + 1e-12)
+    place = differences(lambda e: rub(rough, 0, C, *e, *v, slip, SHELL_SPEED)[:2], e, 1e-5 * C)
+    rate = differences(lambda v: rub(rough, 0, C, *e, *v, slip, SHELL_SPEED)[:2], v, 1e-7)
+    np.testing.assert_allclose(by_place, place, rtol=1e-5, atol=1e-6 * abs(by_place).max())
+    np.testing.assert_allclose(by_rate, rate, rtol=1e-6, atol=1e-6 * abs(by_rate).max() + 1e-12)
 
 
 @pytest.mark.parametrize("slip", [-500.0, 0.01, 500.0])
