@@ -272,9 +272,3 @@ def test_film_with_a_share_of_its_supply_is_one_with_that_pressure(supply: str) 
     expected = steady_loads(part, ROTATION)
     assert steady_loads(supplied(full, 0.25), ROTATION).force == pytest.approx(expected.force, rel=1e-9)
     assert supplied(full, 1.0).section == full.section
-
-
-# --- strains and Reynolds numbers ------------------------------------------------------------------------------------
-
-
-# --- what the case says ----------------------------------------------------------------------------------------------

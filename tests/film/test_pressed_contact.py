@@ -282,10 +282,9 @@ def test_cells_of_a_closing_gap_settle() -> None:
     assert settle(system, felt, w, past, g, leaps=True)[0] == 24
 
 
-@pytest.mark.parametrize("touches", [0.9999])
-def test_the_force_of_cells_has_no_jump_over_the_contact(touches: float) -> None:
+def test_the_force_of_cells_has_no_jump_over_the_contact() -> None:
     """A journal at rest anywhere from before the contact to deep in the shell, as above but each film for itself."""
-    system, g, begins = cells_of(), 2e-5, closes_freely_until(touches)
+    system, g, begins = cells_of(), 2e-5, closes_freely_until(0.9999)
     ring = system.films.loop.ring[0]  # type: ignore[union-attr]
     n = np.array([-ring[SIN, 14], ring[COS, 14]])
     past = np.repeat(gaps(system, (begins - 1.2 * (1.0 - begins)) * n) / g, 6, axis=1)

@@ -72,10 +72,9 @@ def test_the_short_bearing_in_closed_form(tmp_path: Path) -> None:
         assert run["film_thickness_m"][k] == pytest.approx(c * gap.min(), rel=1e-4)
 
 
-@pytest.mark.parametrize("case", ["jeffcott"])
-def test_at_rest_films_carry_the_weight_and_lose_what_the_sheet_says(case: str, tmp_path: Path) -> None:
-    run = run_of(case, tmp_path, [*STEADY, "speed.duration=50 ms", "start.position=resting"], PLAIN)
-    found = frbcli.load_case(case, STEADY)
+def test_at_rest_films_carry_the_weight_and_lose_what_the_sheet_says(tmp_path: Path) -> None:
+    run = run_of("jeffcott", tmp_path, [*STEADY, "speed.duration=50 ms", "start.position=resting"], PLAIN)
+    found = frbcli.load_case("jeffcott", STEADY)
     sheet = bearing_sheet(found, [60.0]).points[0]
     assert run["film_force_y_N"][-1] == pytest.approx(-sheet.load[1], rel=1e-8)
     assert abs(run["film_force_x_N"][-1]) < 1e-6 * -sheet.load[1]

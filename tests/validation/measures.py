@@ -15,7 +15,7 @@ from scipy.linalg import eigh, null_space
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.film.gap import whole_width
-from frbcli.film.rectangles.film import evaluate, largest_pressure, make_film
+from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.linear.stability import Stability, stability
 from frbcli.results.store import Run
@@ -74,14 +74,6 @@ def rise(run: Run) -> Rise:
 def eccentricity_at_1s(folder: Path, name: str, settings: Sequence[str] = ()) -> float:
     """Eccentricity after the first second of a shipped run-up."""
     return float(kept_runup(folder, load_case(name, (*FIRST_SECOND, *settings)))["eccentricity"][-1])
-
-
-def film_pressure(case: Case, eccentricity: float, speed_Hz: float) -> float:
-    """Largest absolute pressure in bar with the journal held still at an eccentricity."""
-    plan = make_plan(case)
-    bearing = make_system(case, plan).films.sections[0]
-    held = np.array([eccentricity * bearing.clearance, 0.0])
-    return largest_pressure(bearing, plan.mesh, held, np.zeros(2), 2 * math.pi * speed_Hz) / 1e5
 
 
 def threshold_Hz(case: Case) -> float:
