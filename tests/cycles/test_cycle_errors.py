@@ -11,8 +11,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from cycle_machines import machine_of
-from rigid_cycles import WIDTH, UNIT_Hz, rigid
+from cycle_machines import WIDTH, UNIT_Hz, machine_of, rigid
 
 import frbcli
 from frbcli.case.schema import Case

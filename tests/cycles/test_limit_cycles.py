@@ -13,9 +13,21 @@ from functools import partial
 
 import numpy as np
 import pytest
-from cycle_machines import cartridge, machine_of, ring_case, turbocharger
+from cycle_machines import (
+    CLEARANCE,
+    GRAVITY,
+    MASS,
+    RADIUS,
+    WIDTH,
+    UNIT_Hz,
+    cartridge,
+    diagram,
+    machine_of,
+    rigid,
+    ring_case,
+    turbocharger,
+)
 from differences import differences
-from rigid_cycles import CLEARANCE, GRAVITY, MASS, RADIUS, WIDTH, UNIT_Hz, diagram, rigid
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.optimize import fsolve

@@ -6,8 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from cycle_machines import machine_of
-from rigid_cycles import diagram, rigid
+from cycle_machines import diagram, machine_of, rigid
 
 from frbcli.cycles.method.balance import multipliers, packed, state_space
 from frbcli.cycles.method.equilibria import resting_curve

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cycle_machines import CLEARANCE, GRAVITY, MASS, UNIT_Hz, diagram, rigid
 from known_flows import KnownFlow, round_cycles
 from numba import njit
-from rigid_cycles import CLEARANCE, GRAVITY, MASS, UNIT_Hz, diagram, rigid
 
 from frbcli.cycles.method.machine import smooth_films
 from frbcli.cycles.shooting.branch import OtherCells, follow_shots, shot_errors

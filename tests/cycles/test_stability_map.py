@@ -8,8 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from cycle_machines import machine_of
-from rigid_cycles import UNIT_Hz, diagram, rigid
+from cycle_machines import UNIT_Hz, diagram, machine_of, rigid
 from scipy.interpolate import CubicSpline
 
 import frbcli

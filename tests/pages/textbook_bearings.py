@@ -7,10 +7,10 @@ import tomllib
 from functools import partial
 
 import numpy as np
+from cycle_machines import UNIT_Hz, rigid
 from numpy.typing import NDArray
 from paths import rows_of
 from printed_sheets import CASE, OMEGA, grooves, printed
-from rigid_cycles import UNIT_Hz, rigid
 
 import frbcli
 from frbcli.linear.sheets.bearing import bearing_sheet, sommerfeld_chart

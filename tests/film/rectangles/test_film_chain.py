@@ -1,4 +1,5 @@
-"""Films between axial grooves: against the plain solve, the independent program, and what symmetry says."""
+"""Films between axial grooves and their modes: against the plain solve, a library of finite elements, the independent
+program, and what symmetry says."""
 
 from __future__ import annotations
 
@@ -10,6 +11,7 @@ import pytest
 from differences import differences
 from films import rectangular
 from paths import DATA
+from skfem import Basis, BilinearForm, ElementLineP2, MeshLine, asm
 
 from frbcli.film.gap import AxialGroove, Section
 from frbcli.film.grid import Mesh, axial_modes, axial_vertices
@@ -134,3 +136,27 @@ def test_turning_bearing_and_motion_turns_the_force() -> None:
     there = at(turned, row, turn).force
     rotation = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
     assert there == pytest.approx(rotation @ here, rel=1e-10)
+
+
+@BilinearForm
+def slopes(u, v, _):  # type: ignore[no-untyped-def]
+    return u.grad[0] * v.grad[0]
+
+
+@BilinearForm
+def values(u, v, _):  # type: ignore[no-untyped-def]
+    return u * v
+
+
+@pytest.mark.parametrize("elements", [1, 4, 9])
+def test_modes_are_those_of_the_forms_that_a_library_assembles(elements: int) -> None:
+    vertices = axial_vertices(elements)
+    modes = axial_modes(vertices)
+    basis = Basis(MeshLine(vertices), ElementLineP2(), intorder=4)
+    order = np.argsort(basis.doflocs[0])
+    stiffness, mass = (asm(form, basis).toarray()[np.ix_(order, order)] for form in (slopes, values))
+    np.testing.assert_allclose(modes.nodes, basis.doflocs[0][order], rtol=0, atol=1e-15)
+    np.testing.assert_allclose(modes.mass, mass, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(modes.shapes @ mass @ modes.shapes.T, np.eye(len(modes.shapes)), rtol=0, atol=1e-12)
+    by_form = modes.shapes @ stiffness @ modes.shapes.T
+    np.testing.assert_allclose(by_form, np.diag(modes.eigenvalues), rtol=0, atol=1e-9 * modes.eigenvalues.max())
