@@ -3,42 +3,32 @@ flow, an implicit step in time of film and line, and films at the pressure that 
 
 from __future__ import annotations
 
+import fed_films
 import numpy as np
 import pytest
 from differences import differences
+from fed_films import AT_REST, AXIAL, BORES, GROOVE, OMEGA, fed_case, fed_film
 
-from frbcli import load_case
-from frbcli.case.schema import Case
 from frbcli.film.cells.balance.boundaries import feed_at, supply_line
 from frbcli.film.cells.balance.states import UPWIND
 from frbcli.film.cells.film import Motion, Storage, VolumeFilm
 from frbcli.film.cells.linearised import linear_film, stiffness_at
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.scene.films import film_places, volume_film
 
-CELLS, OMEGA, PLACE = (48, 6), 300.0, np.array([0.3, -0.5])
-GROOVE = 'kind = "circumferential-groove"'
-AXIAL = 'kind = "axial-grooves", opening_angle = "20 deg"'
-BORES = 'kind = "bores", count = 2, diameter = "4 mm"'
+PLACE = np.array(fed_films.PLACE)
 STARVED = [(GROOVE, 4e-7), (AXIAL, 2e-6), (AXIAL, 2e-7), (BORES, 2e-7)]  # the second axial groove is filled in part
 each_supply = pytest.mark.parametrize(("supply", "flow"), STARVED, ids=["groove", "axial", "emptied", "bores"])
 LAWS = ["elrod", "two-phase", "peeken"]
 
 
-def case_of(supply: str, flow: float | None, law: str, bar: float = 3.0) -> Case:
-    fed = f"{supply}, pressure = '{bar!r} bar'" + ("" if flow is None else f", flow = {flow!r}")
-    return load_case("rigid", [f"film.cavitation={law}", f"bearing.supply={{ {fed} }}"])
-
-
-def film_of(supply: str, flow: float | None, law: str, bar: float = 3.0) -> VolumeFilm:
-    case = case_of(supply, flow, law, bar)
-    return volume_film(case, film_places(case)[0], CELLS)
+def film_of(supply: str, flow: float | None, law: str) -> VolumeFilm:
+    return fed_film(fed_case(supply, flow, law), (48, 6))
 
 
 def settled(film: VolumeFilm) -> float:
     """The filling of the openings at rest."""
-    return FilmSolver(film).steady(Motion((0.3, -0.5), (0.0, 0.0), OMEGA), upwind=True).filling
+    return FilmSolver(film).steady(AT_REST, upwind=True).filling
 
 
 @each_supply
@@ -49,7 +39,7 @@ def test_it_is_what_a_small_step_in_time_does(supply: str, flow: float, law: str
     film, s, step = film_of(supply, flow, law), 0.5 * OMEGA, 1e-5
     clearance, line, rest = film.section.clearance, supply_line(film), settled(film)
     linear = linear_film(film, PLACE * clearance, OMEGA)
-    solver, content = FilmSolver(film), film.content(Motion((0.3, -0.5), (0.0, 0.0), OMEGA), linear.field)
+    solver, content = FilmSolver(film), film.content(AT_REST, linear.field)
 
     def moved(d: np.ndarray, filling: float) -> tuple[np.ndarray, float]:
         """Force after the step with a filling, and what the line does not balance."""
@@ -81,9 +71,8 @@ def test_so_fast_that_the_line_stays_it_is_the_film_at_the_pressure_in_its_openi
     film = film_of(supply, flow, "elrod")
     place, section = PLACE * film.section.clearance, film.section
     gauge = 2e5 * feed_at(film, settled(film)).share
-    linear, plain = (
-        linear_film(each, place, OMEGA) for each in (film, film_of(supply, None, "elrod", 1.0 + 1e-5 * gauge))
-    )
+    lower = film_of(supply.replace("3 bar", f"{1.0 + 1e-5 * gauge!r} bar"), None, "elrod")
+    linear, plain = (linear_film(each, place, OMEGA) for each in (film, lower))
     assert section.ambient_pressure == 1e5
     for s, close in ((1e7j, 1e-4), (0.0, None)):
         own, other = stiffness_at(linear, s), stiffness_at(plain, s)

@@ -4,45 +4,32 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from fed_films import AT_REST, GROOVE, OMEGA, by_grooves, fed_case, fed_film
 
-from frbcli import load_case
 from frbcli.bearing_tests.history import march, whirl_path
-from frbcli.case.schema import Case
 from frbcli.film.cells.balance.boundaries import ALL, RESPONSE, supply_line
-from frbcli.film.cells.film import Motion, VolumeFilm
+from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.scene.films import film_places, volume_film
-
-CELLS, OMEGA = (32, 6), 300.0
-GROOVE = 'kind = "circumferential-groove", pressure = "3 bar"'
-AXIAL = 'kind = "axial-grooves", opening_angle = "20 deg", pressure = "3 bar"'
-each_supply = pytest.mark.parametrize("supply", [GROOVE, AXIAL], ids=["groove", "axial"])
-
-
-def case_of(supply: str, flow: float | None, *settings: str) -> Case:
-    limit = "" if flow is None else f", flow = {flow!r}"
-    return load_case("rigid", ["film.cavitation=elrod", f"bearing.supply={{ {supply}{limit} }}", *settings])
 
 
 def film_of(supply: str, flow: float | None) -> VolumeFilm:
-    case = case_of(supply, flow)
-    return volume_film(case, film_places(case)[0], CELLS)
+    return fed_film(fed_case(supply, flow), (32, 6))
 
 
-@each_supply
+@by_grooves
 @pytest.mark.parametrize("longest", [1e-3, 4.0 * RESPONSE])
 def test_a_journal_that_stands_still_has_the_film_that_takes_what_is_given(supply: str, longest: float) -> None:
     """Steps longer than the response of a line are stable as well. A moved film carries its oil with second order, a
     steady one of Elrod's upwind, which a groove that is filled in part shows."""
-    film, motion = film_of(supply, 4e-7), Motion((0.3, -0.5), (0.0, 0.0), OMEGA)
-    *_, last = march(film, lambda _: motion, np.arange(0.0, 300.0 * longest, longest))
-    steady = FilmSolver(film).steady(motion)
+    film = film_of(supply, 4e-7)
+    *_, last = march(film, lambda _: AT_REST, np.arange(0.0, 300.0 * longest, longest))
+    steady = FilmSolver(film).steady(AT_REST)
     assert steady.filling < ALL
     assert last.solution.filling == pytest.approx(steady.filling, rel=1e-6 if supply == GROOVE else 0.02)
     assert last.solution.flows.supply == pytest.approx(supply_line(film).given, rel=1e-6)
 
 
-@each_supply
+@by_grooves
 def test_what_was_given_has_passed_or_fills_the_line(supply: str) -> None:
     """While the line is not full; else the supply gives less."""
     film, times = film_of(supply, 1e-7), np.linspace(0.0, 0.05, 101)
@@ -58,7 +45,7 @@ def test_what_was_given_has_passed_or_fills_the_line(supply: str) -> None:
     assert passed == pytest.approx(line.given * (times[-2] - times[first]) + emptied, rel=1e-10)
 
 
-@each_supply
+@by_grooves
 def test_an_ample_flow_is_a_supply_at_its_pressure_to_the_bit(supply: str) -> None:
     path, times = whirl_path(0.5, 50.0, OMEGA), np.linspace(0.0, 0.01, 21)
     plain, ample = (list(march(film_of(supply, flow), path, times)) for flow in (None, 1.0))

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fed_films import AXIAL, GROOVE, by_grooves, fed_case
 from resumed import assert_resumable
 
-from frbcli import load_case, read_run, runup
+from frbcli import read_run, runup
 from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import RunFileError
@@ -23,18 +24,14 @@ from frbcli.results.store import Run
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 
-GROOVE = 'kind = "circumferential-groove", pressure = "3 bar"'
-AXIAL = 'kind = "axial-grooves", opening_angle = "20 deg", pressure = "3 bar"'
 FLOW = {GROOVE: 4e-7, AXIAL: 5e-7}  # m^3/s, about a third of what the films take at 3 bar
-each_supply = pytest.mark.parametrize("supply", [GROOVE, AXIAL], ids=["groove", "axial"])
 DURATION = 0.15
 
 
 def case_of(supply: str, flow: float | None, *settings: str) -> Case:
-    limit = "" if flow is None else f", flow = {flow!r}"
-    common = ["film.cavitation=elrod", "accuracy.mesh=[6, 32]", "rotor.unbalance=0"]
+    common = ["accuracy.mesh=[6, 32]", "rotor.unbalance=0"]
     speed = ["speed.from=50", "speed.to=50", f"speed.duration={DURATION}"]
-    return load_case("rigid", [*common, *speed, f"bearing.supply={{ {supply}{limit} }}", *settings])
+    return fed_case(supply, flow, "elrod", *common, *speed, *settings)
 
 
 def flows_of(run: Run) -> np.ndarray:
@@ -44,7 +41,7 @@ def flows_of(run: Run) -> np.ndarray:
     return np.asarray(checkpoint["flows"][PASSED, 0])
 
 
-@each_supply
+@by_grooves
 def test_what_was_given_has_passed_or_fills_the_line(supply: str, tmp_path: Path) -> None:
     """An unbalance shakes a journal that rests; the line is never full, so that no oil is left over."""
     case = case_of(supply, FLOW[supply], "start.position=resting", "rotor.unbalance=20 g*mm")
@@ -107,7 +104,7 @@ def test_errors_of_a_line_that_empties_are_stated(tmp_path: Path) -> None:
     assert of_finer < 0.2 * stated < 0.8 * apart  # type: ignore[operator]
 
 
-@each_supply
+@by_grooves
 def test_a_journal_comes_to_rest_where_a_film_with_this_flow_carries_it(supply: str, tmp_path: Path) -> None:
     case = case_of(supply, FLOW[supply])
     system = make_system(case, make_plan(case))

@@ -3,15 +3,15 @@ program, and what symmetry says."""
 
 from __future__ import annotations
 
-import csv
 import math
 
 import numpy as np
 import pytest
 from differences import differences
 from films import rectangular
-from paths import DATA
+from paths import rows_of
 from skfem import Basis, BilinearForm, ElementLineP2, MeshLine, asm
+from volume_films import motion_of
 
 from frbcli.film.gap import AxialGroove, Section
 from frbcli.film.grid import Mesh, axial_modes, axial_vertices
@@ -33,24 +33,17 @@ def grooved(pressure: float, count: int = 1, position: float = 0.0) -> Section:
 FILMS = {pressure: make_film(grooved(pressure), "finite", "half-sommerfeld", MESH) for pressure in (1e5, 2e5)}
 
 
-def rows() -> list[dict[str, str]]:
-    path = DATA / "film-forces-all.csv"
-    lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
-    return [
-        row
-        for row in csv.DictReader(lines)
-        if row["supply"] == "axial-groove" and row["cavitation"] == "half-sommerfeld"
-    ]
+ROWS = [
+    row
+    for row in rows_of("film-forces-all.csv")
+    if row["supply"] == "axial-groove" and row["cavitation"] == "half-sommerfeld"
+]
 
 
 def at(film: FilmData, row: dict[str, str], turned: float = 0.0) -> FilmForce:
     """The film's force at the position and motion of a row, all turned by an angle."""
-    eccentricity, angle = float(row["eccentricity"]), math.radians(float(row["attitude_deg"])) + turned
-    along, across = np.array([math.cos(angle), math.sin(angle)]), np.array([-math.sin(angle), math.cos(angle)])
-    rate, whirl = float(row["eccentricity_rate_1_s"]), float(row["whirl_speed_rad_s"])
-    velocity = CLEARANCE * (rate * along + eccentricity * whirl * across)
-    omega = 2 * math.pi * float(row["speed_Hz"])
-    return evaluate(film, CLEARANCE, CLEARANCE * eccentricity * along, velocity, omega)
+    motion = motion_of(row | {"attitude_deg": str(float(row["attitude_deg"]) + math.degrees(turned))})
+    return evaluate(film, CLEARANCE, CLEARANCE * np.array(motion.d), CLEARANCE * np.array(motion.v), motion.omega)
 
 
 def row_id(row: dict[str, str]) -> str:
@@ -58,7 +51,7 @@ def row_id(row: dict[str, str]) -> str:
     return "-".join(row[name] for name in names)
 
 
-@pytest.mark.parametrize("row", rows(), ids=row_id)
+@pytest.mark.parametrize("row", ROWS, ids=row_id)
 def test_force_of_the_independent_program(row: dict[str, str]) -> None:
     expected = np.array([float(row["Fx_N"]), float(row["Fy_N"])])
     force = at(FILMS[1e5 * float(row["supply_pressure_bar"])], row).force
@@ -129,7 +122,7 @@ def test_derivatives_are_those_of_the_force(cavitation: str, pressure: float) ->
 
 def test_turning_bearing_and_motion_turns_the_force() -> None:
     turn = 1.1
-    row = rows()[10]
+    row = ROWS[10]
     here = at(FILMS[1e5 * float(row["supply_pressure_bar"])], row).force
     pressure = 1e5 * float(row["supply_pressure_bar"])
     turned = make_film(grooved(pressure, position=turn), "finite", "half-sommerfeld", MESH)
