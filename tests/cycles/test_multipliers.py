@@ -7,18 +7,17 @@ import math
 import numpy as np
 import pytest
 from cycle_machines import diagram, machine_of, rigid
+from marches import planned_system
 
 from frbcli.cycles.method.balance import multipliers, packed, state_space
 from frbcli.cycles.method.equilibria import resting_curve
-from frbcli.scene.machine.system import make_system
-from frbcli.scene.planning.plan import make_plan
 
 
 def test_multipliers_next_to_rest_are_those_of_the_eigenvalues() -> None:
     """A cycle of almost no size: exp(lambda T) of the eigenvalues at the Hopf point, 1 for the critical pair."""
     case = rigid(1.313, 2.4, 2.9)
     machine = machine_of(case)
-    system = make_system(case, make_plan(case))
+    system = planned_system(case)
     (hopf,) = resting_curve(system, machine, 2.0 * math.pi * case.speed.start, 2.0 * math.pi * case.speed.end).hopf
     motion = np.zeros((3, 2), dtype=complex)
     motion[0], motion[1] = hopf.equilibrium.u, 1e-7 * hopf.mode

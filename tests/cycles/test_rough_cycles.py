@@ -10,6 +10,7 @@ import pytest
 from cycle_machines import machine_of
 from differences import differences
 from films import ROUGH
+from marches import planned_system
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
@@ -19,8 +20,6 @@ from frbcli.cycles.method.machine import film_loads
 from frbcli.film.roughness.asperities import rub
 from frbcli.linear.sheets.bearing import bearing_sheet
 from frbcli.runs.run import runup
-from frbcli.scene.machine.system import make_system
-from frbcli.scene.planning.plan import make_plan
 
 OMEGA = 2.0 * math.pi * 1.5
 PLACE, RATE = np.array([[0.11, -0.958]]), np.array([[3.0, -1.0]])
@@ -32,7 +31,7 @@ def rigid() -> Case:
 
 def test_loads_are_those_of_film_and_summits_with_exact_derivatives() -> None:
     case = rigid()
-    machine, system = machine_of(case), make_system(case, make_plan(case))
+    machine, system = machine_of(case), planned_system(case)
     found, c = film_loads(machine, PLACE, RATE, OMEGA), system.clearances[0]
     expected = system.force(0, c * PLACE[0], c * RATE[0], OMEGA)
     np.testing.assert_allclose(found.values[0], expected.force, rtol=1e-9)
@@ -56,7 +55,7 @@ def test_friction_follows_the_speed(slow: float) -> None:
 
 def test_resting_curve_is_that_of_the_sheet() -> None:
     case = rigid()
-    machine, system = machine_of(case), make_system(case, make_plan(case))
+    machine, system = machine_of(case), planned_system(case)
     points = resting_curve(system, machine, 2.0 * math.pi * 0.3, 2.0 * math.pi).points
     ends = points[0], points[-1]
     states = bearing_sheet(case, [each.omega / (2.0 * math.pi) for each in ends]).points

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from cycle_machines import CLEARANCE, GRAVITY, MASS, UNIT_Hz, diagram, rigid
 from known_flows import KnownFlow, round_cycles
+from marches import planned_system
 from numba import njit
 
 from frbcli.cycles.method.machine import smooth_films
@@ -18,8 +19,6 @@ from frbcli.cycles.shooting.fixed_point import SlowSpace
 from frbcli.cycles.shooting.rest import RestThreshold, located, thresholds
 from frbcli.cycles.shooting.shots import AT_REST_DIFFERENCE, Shooting, Shot, multipliers_of
 from frbcli.film.rectangles.film_force import film_force
-from frbcli.scene.machine.system import make_system
-from frbcli.scene.planning.plan import make_plan
 
 
 def started(shooting: Shooting, flow: KnownFlow, begun: tuple[float, float]) -> tuple[RestThreshold, Shot]:
@@ -114,7 +113,7 @@ def rigid_flow(gamma: float) -> KnownFlow:
     """The rigid rotor in short bearings, integrated in time. Its damping is large for the steps that shooting asks
     for: with 256 in a period the cycle with an eccentricity of 0.81 was found at 0.75."""
     case = rigid(gamma, 2.4, 2.9)
-    (film,) = smooth_films(make_system(case, make_plan(case)))
+    (film,) = smooth_films(planned_system(case))
     return KnownFlow(
         lambda z, omega: rigid_rate(film, z, omega),
         CLEARANCE,

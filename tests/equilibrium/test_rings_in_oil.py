@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from films import ROUGH
-from marches import march, rigid_shaft, seen_between, start
+from marches import march, planned_system, rigid_shaft, seen_between, start
 from numpy.typing import NDArray
 
 import frbcli
@@ -29,8 +29,7 @@ from frbcli.linear.stability import stability_points
 from frbcli.linear.stability_point import eigenvalues, machine_rotor, point_at_rest
 from frbcli.rotor.assembly import sprung
 from frbcli.rotor.loads import speed_profile
-from frbcli.scene.machine.system import System, make_system
-from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.machine.system import System
 from frbcli.solve.state import Control
 
 SPEED = 60.0
@@ -159,7 +158,7 @@ def test_a_ring_rests_as_it_turns_in_the_time_loop(factor: str) -> None:
     """On the same cells; with full films it would turn with 0.1723 of the speed of the rotor. Its speed settles with
     15 1/s: a ratio that is wrong by 1 % is off by 0.9 % after the run."""
     case = ring_case("2 bar", "two-phase", "accuracy.mesh=[6,48]", f"film.cavitation_factor={factor}")
-    system = make_system(case, make_plan(case))
+    system = planned_system(case)
     rest, profile = resting_position(system, OMEGA), speed_profile((0.0, 0.15), (OMEGA, OMEGA))
     control = Control(1e-7, 24.0, 0.01, 0.01, 0.9999, 0.0)
     after = march(system, profile, control, start(system, profile, rest.displacements, rest.velocities(system)))
@@ -224,7 +223,7 @@ def tilting_shaft(law: str, mesh: str = "[8,96]") -> Case:
 
 def seen_in_the_loop(case: Case, omega: float, time: float, disturbance: float = 1e-3) -> np.ndarray:
     """Eigenvalues in 1/s of what lies between two runs of 200 steps of output. disturbance: over the clearance."""
-    system = make_system(case, make_plan(case))
+    system = planned_system(case)
     rest, spins = resting_position(system, omega), list(system.spins)
     q = np.random.default_rng(1).normal(size=system.rotor.size)
     q *= disturbance * system.clearances[0] / np.abs(system.rotor.journals[:, :2] @ q).max()

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from differences import differences
 from films import ROUGH
-from marches import march, start
+from marches import march, planned_system, start
 
 import frbcli
 from frbcli.cycles.method.balance import state_space
@@ -21,8 +21,7 @@ from frbcli.film.roughness.asperities import make_asperities, rub
 from frbcli.film.roughness.contact import BY_V_X, BY_X, VALUE, Rubbing
 from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.loads import speed_profile
-from frbcli.scene.machine.system import System, make_system
-from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.machine.system import System
 from frbcli.solve.stage.forces import RoughContact
 from frbcli.solve.state import Control
 
@@ -39,7 +38,7 @@ STEPS = np.array([1e-11, 1e-11, 1e-8, 1e-8, 1e-6, 1e-6])
 @pytest.fixture(scope="module")
 def system() -> System:
     case = frbcli.load_case("floating-ring", FILMS)
-    return make_system(case, make_plan(case))
+    return planned_system(case)
 
 
 def coefficients(films: FilmsAtRest) -> tuple[np.ndarray, np.ndarray]:

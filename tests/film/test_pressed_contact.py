@@ -10,7 +10,7 @@ import films
 import numpy as np
 import pytest
 from differences import differences
-from marches import rigid
+from marches import planned_system, rigid
 
 from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
@@ -23,7 +23,7 @@ from frbcli.film.contact_gap import KEPT, closes_freely_until, contact_gap
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.runs.march import March
-from frbcli.scene.machine.system import Segment, System, make_system
+from frbcli.scene.machine.system import Segment, System
 from frbcli.scene.planning.cell_choice import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.films.cells import EMPTY, OPEN, cell_response, move_even
@@ -97,7 +97,7 @@ def system_of(kind: str) -> System:
         bearing = films.KINDS[kind][0]
         return films.system_of(rigid(6.0, 0.0, 0.0), (bearing,), (films.film_of(*films.KINDS[kind]),))
     case = load_case(CASES[kind][0], CASES[kind][1:])
-    return make_system(case, make_plan(case))
+    return planned_system(case)
 
 
 def rows_of(system: System, d: Array, v: Array, omega: float, g: float) -> Array:
@@ -227,7 +227,7 @@ def test_the_shell_pushes_back_along_the_line_of_centres() -> None:
 
 def cells_of(*settings: str) -> System:
     case = load_case(BASE, ["bearing.supply.pressure=4 bar", "accuracy.mesh=[6,48]", *settings])
-    return make_system(case, make_plan(case))
+    return planned_system(case)
 
 
 def settle(system: System, felt: Array, w: Array, past: Array, g: float, leaps: bool) -> tuple[int, Array, Array]:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from marches import planned_system
 
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
@@ -16,7 +17,7 @@ from frbcli.runs import march
 from frbcli.runs.error_budget import FewerCells, FilmErrors, grows_from, summed
 from frbcli.runs.run import runup
 from frbcli.runs.second_run import grows_late, on_fewer_cells
-from frbcli.scene.machine.system import make_segments, make_system
+from frbcli.scene.machine.system import make_segments
 from frbcli.scene.planning.cell_choice import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import ERROR_LARGEST, ERROR_SPANS, NUMBERS, RUN_END, TIME
@@ -56,7 +57,7 @@ def test_an_error_that_arises_late_says_from_when_on() -> None:
     """Of two runs that part with exp(10 t), a third of what they differ by at 1 s is reached at 1 - ln(3)/10."""
     times = np.linspace(0.0, 2.0, 201)
     case = load_case("jeffcott-two-phase")
-    system = make_system(case, make_plan(case))
+    system = planned_system(case)
     samples = np.zeros((201, 2 * system.rotor.size + 2))
     other, along_x = samples.copy(), system.films.seen(system.rotor.journals)[0][0]
     other[:, : system.rotor.size] = 1e-9 * np.exp(10.0 * times)[:, None] * along_x
@@ -115,7 +116,7 @@ def test_stated_error_of_cells_bounds_the_true_one(
 def test_runs_that_agree_by_chance(least: float, stated: float) -> None:
     """The journal goes to 1e-2 of the clearance in both runs: no error larger than that is stated."""
     case = load_case("rigid-two-phase")
-    system = make_system(case, make_plan(case))
+    system = planned_system(case)
     row = np.zeros((1, 2 * system.rotor.size + 2))
     row[0, 0] = 1e-2 * system.clearances[0]
     found = FewerCells(0.5, row, least).error(row, system)
@@ -126,7 +127,7 @@ def test_runs_that_agree_by_chance(least: float, stated: float) -> None:
 def test_between_rings_only_lengths_count() -> None:
     """A journal that is as far out in another direction errs in its place, but not in its eccentricity."""
     case = load_case("floating-ring")
-    system = make_system(case, make_plan(case))
+    system = planned_system(case)
     out, n = 0.5 * min(system.clearances), system.rotor.size
     row, away = np.zeros((1, 2 * n + 3)), np.zeros((1, 2 * n + 3))
     along, across = (np.linalg.pinv(np.concatenate(system.rotor.journals))[:, [i, 2 + i]].sum(axis=1) for i in (0, 1))

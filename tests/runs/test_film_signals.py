@@ -7,14 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from marches import planned_system
 
 import frbcli
 from frbcli.errors import InputError, RunFileError
 from frbcli.linear.sheets.bearing import bearing_sheet
 from frbcli.plot.motion import quantity_figure
 from frbcli.results.store import Run
-from frbcli.scene.machine.system import make_system
-from frbcli.scene.planning.plan import make_plan
 
 PLAIN = ["force", "film-thickness", "power", "torque"]
 STEADY = ["speed.from=60 Hz", "speed.to=60 Hz", "rotor.unbalance=0 g*mm"]
@@ -45,7 +44,7 @@ def test_the_short_bearing_in_closed_form(tmp_path: Path) -> None:
     settings = [*SHORT, "film.cavitation=sommerfeld", "rotor.unbalance=30 g*mm", "rotor.external_damping=1000 N*s/m"]
     run = run_of("rigid", tmp_path, settings, PLAIN)
     case = frbcli.load_case("rigid", settings)
-    system = make_system(case, make_plan(case))
+    system = planned_system(case)
     t, omega = run["time_s"], 2.0 * math.pi * run["speed_Hz"]
     place = np.column_stack([run["journal_x_m"], run["journal_y_m"]])
     rate = np.gradient(place, t, axis=0)
@@ -101,7 +100,7 @@ def test_oil_that_leaves_short_films_in_motion(tmp_path: Path) -> None:
     open end."""
     run = run_of("rigid", tmp_path, [*SHORT, "rotor.unbalance=30 g*mm"], ["oil-flow"])
     case = frbcli.load_case("rigid", SHORT)
-    film = make_system(case, make_plan(case)).films.sections[0]
+    film = planned_system(case).films.sections[0]
     place = np.column_stack([run["journal_x_m"], run["journal_y_m"]])
     rate, omega = np.gradient(place, run["time_s"], axis=0), 2.0 * math.pi * run["speed_Hz"]
     w = rate - 0.5 * omega[:, None] * np.column_stack([-place[:, 1], place[:, 0]])

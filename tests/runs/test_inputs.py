@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from marches import planned_system
 from resumed import assert_resumable
 
 import frbcli
@@ -17,7 +18,6 @@ from frbcli.equilibrium.static_machine import warm_machine
 from frbcli.errors import InputError
 from frbcli.runs.inputs import RunInputs
 from frbcli.runs.run import rundown, runup
-from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.inputs import value_at
 
@@ -73,7 +73,7 @@ def test_values_between_rows_are_those_of_a_line() -> None:
     values = rng.uniform(1.5, 3.0, 20)
     rows = zip(time.tolist(), (f"{value!r} bar" for value in values.tolist()), strict=True)
     case = machine(*HEAT, pressure(*rows), supplied((0, "20 degC"), (1, "60 degC")), *at_speed(60.0, 0.1))
-    system = make_system(case, make_plan(case))
+    system = planned_system(case)
     inputs = RunInputs.of(case, system).loop(system)
     at = rng.uniform(0.0, time[-1], 50)
     assert [value_at(inputs, 1, t) for t in at] == pytest.approx(1e5 * np.interp(at, time, values), rel=1e-12)
@@ -88,7 +88,7 @@ def test_a_share_of_the_pressure_of_a_table_is_that_pressure(theory: str) -> Non
 
     def system(bar: float) -> object:
         case = machine(*(each.format(bar) for each in common))
-        return make_system(case, make_plan(case))
+        return planned_system(case)
 
     full = system(3.0)
     for gauge, share, close in ((0.5, 0.25, 1e-9), (2e-5, 1e-5, 1e-6), (0.0, 1e-9, 2e-3)):
@@ -109,7 +109,7 @@ def test_the_journal_goes_to_where_it_rests_at_the_last_pressure(films: list[str
     first, last = (machine(*common, f"bearing.supply.pressure={bar} bar") for bar in (10.0, 1.2))
     rest = []
     for case in (first, last):
-        system = make_system(case, make_plan(case))
+        system = planned_system(case)
         place = system.rotor.journals[0] @ resting_position(system, 2.0 * math.pi * 40.0).displacements
         rest.append(math.hypot(*place) / 35e-6)
     assert abs(rest[1] - rest[0]) > 0.01

@@ -6,16 +6,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from marches import planned_system
 from PIL import Image
 from resumed import assert_resumable
 
-from frbcli import load_case, make_plan, read_run, runup
+from frbcli import load_case, read_run, runup
 from frbcli.case.schema import Case
 from frbcli.errors import RunFileError
 from frbcli.film.cells.data import SHEARED
 from frbcli.plot.moving import MOMENTS, animate_films, film_moments_figure
 from frbcli.results.store import GAS, OIL, KeptFilm, Run, kept_film
-from frbcli.scene.machine.system import make_system
 
 FRAMES = 9
 KEPT = f'output.films={{ from="10 ms", to="30 ms", frames={FRAMES} }}'
@@ -35,7 +35,7 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> Run:
 def test_the_oil_and_the_place_of_each_moment_are_those_of_the_signals(kept: Run) -> None:
     """Of the step that reaches a moment, on cells that turn with the oil."""
     case = case_of(KEPT)
-    sheared = make_system(case, make_plan(case)).films.loop.cells[0, SHEARED]
+    sheared = planned_system(case).films.loop.cells[0, SHEARED]
     film, times = kept_film(read_run(kept.path), [""]), kept["time_s"]
     asked = np.linspace(0.01, 0.03, FRAMES)
     assert np.all(film.times >= asked)

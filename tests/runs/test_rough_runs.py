@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from films import ROUGH
+from marches import planned_system
 from resumed import assert_resumable
 from scipy.integrate import quad
 from scipy.interpolate import CubicSpline
@@ -23,8 +24,7 @@ from frbcli.linear.sheets.bearing import bearing_sheet
 from frbcli.linear.stability import stability
 from frbcli.results.store import Run
 from frbcli.runs.run import rundown, runup
-from frbcli.scene.machine.system import make_system, rough_surfaces
-from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.machine.system import rough_surfaces
 
 WEAR = "contact.wear=1e-7", "contact.hardness=2 GPa"
 STARTS = ("start.position=resting", "rotor.unbalance=0 g*mm", 'output.signals=["torque","power"]')
@@ -182,7 +182,7 @@ def test_a_run_with_flow_factors_stays_where_its_film_rests_on_fewer_summits(tmp
     (sheet,) = bearing_sheet(case, [0.3]).points
     assert sheet.mixed is not None
     run = runup(case, tmp_path / "run.h5")
-    system = make_system(case, make_plan(case))
+    system = planned_system(case)
     (place,) = resting_position(system, omega).journals
     film, _ = system.films.power_and_flow(0, place, omega, omega, 0.0)
     np.testing.assert_allclose(run["eccentricity"], np.hypot(*place) / 35e-6, rtol=1e-9)
@@ -230,7 +230,7 @@ def test_a_ring_that_friction_holds_rests_as_in_a_run(tmp_path: Path) -> None:
     what so small an angle changes."""
     course = ("speed.from=4.0 Hz", "speed.to=4.0 Hz", "speed.duration=0.2 s")
     case = load_case("floating-ring", [*ROUGH, *STARTS, "film.cavitation=half-sommerfeld", *course])
-    system = make_system(case, make_plan(case))
+    system = planned_system(case)
     rest = resting_position(system, 2.0 * np.pi * 4.0)
     run = runup(case, tmp_path / "run.h5")
     eccentricities = np.hypot(*rest.journals.T) / system.clearances
@@ -248,7 +248,7 @@ def test_a_ring_that_friction_holds_rests_as_in_a_run(tmp_path: Path) -> None:
 def test_a_ring_whose_summits_do_not_touch_rests_as_between_smooth_surfaces() -> None:
     """Bit for bit."""
     case = load_case("floating-ring", [*ROUGH, "film.cavitation=half-sommerfeld"])
-    system, omega = make_system(case, make_plan(case)), 2.0 * np.pi * 30.0
+    system, omega = planned_system(case), 2.0 * np.pi * 30.0
     rough, smooth = (resting_position(each, omega) for each in (system, replace(system, asperities=None)))
     np.testing.assert_array_equal(rough.ring_speeds, smooth.ring_speeds)
     np.testing.assert_allclose(rough.displacements, smooth.displacements, rtol=1e-9)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from marches import SPEED, WIDTH, Result, flat_films, march, rigid_shaft, start
+from marches import SPEED, WIDTH, Result, flat_films, march, planned_system, rigid_shaft, start
 
 import frbcli
 from frbcli.case.reading.load import load_case
@@ -20,7 +20,7 @@ from frbcli.rotor.loads import speed_profile
 from frbcli.runs.films import tilt_signals
 from frbcli.scene.forms.tilted import TiltedForm
 from frbcli.scene.machine.rotor import make_rotor
-from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.machine.system import System
 from frbcli.scene.planning.cell_choice import worst_film
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import SOLVES, STEPS, Control
@@ -46,7 +46,7 @@ Array = np.ndarray
 
 def tilted(*more: str) -> tuple[Case, System]:
     case = rigid_shaft("film.tilt=follows", MESH, *more)
-    return case, make_system(case, make_plan(case))
+    return case, planned_system(case)
 
 
 def run(system: System, duration: float, q: Array, limits: Control = CONTROL) -> Result:
@@ -131,7 +131,7 @@ def inclined(kind: str, side: float, *more: str) -> System:
     """A rotor that moves in its plane in a shell that is not in line, inclined to the one or the other side."""
     shell = f'bearing.misalignment=["{side * 0.5} mrad", "{side * -0.3} mrad"]'
     case = load_case(kind, ["film.theory=finite", "film.cavitation=half-sommerfeld", MESH, shell, *more])
-    return make_system(case, make_plan(case))
+    return planned_system(case)
 
 
 def test_a_rotor_that_does_not_tilt_stays_at_rest_in_a_shell_out_of_line() -> None:
@@ -156,7 +156,7 @@ def test_small_motions_in_a_shell_out_of_line_grow_as_the_eigenvalues_say(monkey
     monkeypatch.setattr(TiltedForm, "static_cells", ((24, 8), (16, 6)))
     case = load_case("jeffcott", ["film.theory=finite", "film.cavitation=sommerfeld", MESH, "rotor.unbalance=0 g*mm",
                                   'bearing.misalignment=["0.8 mrad", "0.3 mrad"]'])  # fmt: skip
-    system = make_system(case, make_plan(case))
+    system = planned_system(case)
     point = stability_points(case, [SPEED])[1][0]
     rest, journal = resting_position(system, OMEGA).displacements, system.rotor.journals[0, :2]
     aside = 1e-4 * system.clearances[0] * np.linalg.pinv(journal) @ np.array([1.0, 0.0])

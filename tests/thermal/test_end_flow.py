@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from films import rectangular
+from marches import planned_system
 
 from frbcli.case.reading.load import load_case
 from frbcli.film.cells.balance.side_flow import outflow
@@ -13,7 +14,6 @@ from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
 from frbcli.film.rectangles.end_flow import TableEndFlow, end_flow, make_end_flow
 from frbcli.film.rectangles.film import make_film
-from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 
 
@@ -29,7 +29,7 @@ def test_end_flow_is_that_of_fine_cells(eccentricity: float, pressure: float) ->
     """The same linear film on finite volumes, its outflow where the pressure falls towards the end."""
     cells = ["film.solution=cells", "accuracy.mesh=[40, 240]", "film.cavitation=sommerfeld", "bearing.ends=oil-bath"]
     case = load_case("jeffcott", [f"bearing.supply.pressure={pressure}", *cells])
-    (film,) = make_system(case, make_plan(case)).films.with_fields
+    (film,) = planned_system(case).films.with_fields
     omega, d = 900.0, np.array([0.6, -0.8]) * eccentricity
     motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), omega)
     solution = FilmSolver(film).steady(motion)
@@ -53,9 +53,9 @@ def test_end_flow_of_a_short_film_is_its_closed_form() -> None:
 def test_end_flow_between_axial_grooves_is_that_of_fine_cells() -> None:
     settings = ["film.cavitation=sommerfeld", "bearing.ends=oil-bath", "film.solution=cells", "accuracy.mesh=[40, 240]"]
     case = load_case("axial-groove", settings)
-    (film,) = make_system(case, make_plan(case)).films.with_fields
+    (film,) = planned_system(case).films.with_fields
     plain = load_case("axial-groove")
-    system = make_system(plain, make_plan(plain))
+    system = planned_system(plain)
     flow = make_end_flow(system.films.sections[0], system.films.loop[0])
     d, omega = np.array([0.3, -0.4]), 900.0
     motion = Motion((0.3, -0.4), (0.0, 0.0), omega)

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from energy_film import Bearing, solve
+from marches import planned_system
 from printed_sheets import CASE, grooves
 
 from frbcli.case.reading.load import load_case, load_case_text
@@ -27,8 +28,6 @@ from frbcli.film.cells.loads import force
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.linear.sheets.bearing import sommerfeld_chart
 from frbcli.materials import OILS
-from frbcli.scene.machine.system import make_system
-from frbcli.scene.planning.plan import make_plan
 
 
 @pytest.mark.parametrize("cavitation", ["sommerfeld", "half-sommerfeld", "penalty", "reynolds", "two-phase"])
@@ -39,7 +38,7 @@ def test_power_of_journal_shell_and_pump_is_the_dissipation(cavitation: str) -> 
     settings = [f"film.cavitation={cavitation}", "film.solution=cells", "accuracy.mesh=[24, 192]",
                 "bearing.ends=oil-bath", f"bearing.supply.pressure={supply} bar", "film.theory=auto"]  # fmt: skip
     case = load_case("jeffcott", settings)
-    (film,) = make_system(case, make_plan(case)).films.with_fields
+    (film,) = planned_system(case).films.with_fields
     omega, d = 900.0, (0.6 * 0.7, -0.8 * 0.7)
     motion = Motion(d, (20.0, 30.0), omega)
     solution = FilmSolver(film).steady(motion)
