@@ -27,6 +27,7 @@ from frbcli.runs.run import rundown, runup
 from frbcli.scene.machine.system import rough_surfaces
 
 WEAR = "contact.wear=1e-7", "contact.hardness=2 GPa"
+HEAVY = "rotor.gravity=40 m/s^2"  # else a ring without feed holes slips
 STARTS = ("start.position=resting", "rotor.unbalance=0 g*mm", 'output.signals=["torque","power"]')
 
 
@@ -224,12 +225,20 @@ def test_a_ring_sticks_to_its_shell_until_its_rotor_has_lifted_off(tmp_path: Pat
     ]  # fmt: skip
 
 
-def test_a_ring_that_friction_holds_rests_as_in_a_run(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "films",
+    [
+        ("film.theory=short", 'bearing.inner.supply={kind="circumferential-groove", pressure="2 bar"}', HEAVY),
+        pytest.param((), marks=pytest.mark.nightly),  # compiles a time loop of its own for a minute
+    ],
+    ids=["grooves", "feed holes"],
+)
+def test_a_ring_that_friction_holds_rests_as_in_a_run(films: tuple[str, ...], tmp_path: Path) -> None:
     """It sticks to its shell and creeps there, as Coulomb's law near rest has it. With it creep its feed holes, by
     2e-4 rad in the run: the rest, which has them at its angle 0, is that of the beginning to 1e-6, and of the end to
     what so small an angle changes."""
     course = ("speed.from=4.0 Hz", "speed.to=4.0 Hz", "speed.duration=0.2 s")
-    case = load_case("floating-ring", [*ROUGH, *STARTS, "film.cavitation=half-sommerfeld", *course])
+    case = load_case("floating-ring", [*ROUGH, *STARTS, "film.cavitation=half-sommerfeld", *films, *course])
     system = planned_system(case)
     rest = resting_position(system, 2.0 * np.pi * 4.0)
     run = runup(case, tmp_path / "run.h5")
@@ -240,8 +249,8 @@ def test_a_ring_that_friction_holds_rests_as_in_a_run(tmp_path: Path) -> None:
     ring = run["ring_speed_Hz"] / (rest.ring_speeds[0] / (2.0 * np.pi)) - 1.0
     assert np.abs(ring[run["time_s"] < 0.02]).max() < 1e-6
     assert np.abs(ring).max() < 1e-4
-    films = resting_position(replace(system, asperities=None), 60.0 * np.pi)
-    assert rest.ring_speeds[0] / 4.0 < films.ring_speeds[0] / 30.0
+    smooth = resting_position(replace(system, asperities=None), 60.0 * np.pi)
+    assert rest.ring_speeds[0] / 4.0 < smooth.ring_speeds[0] / 30.0
     assert rest.ring_speeds[0] < 2.0 * np.pi * 4.0 * 2e-4
 
 
