@@ -37,7 +37,7 @@ YOUNG = 300_000
 # the same time: they compile no time loop for the same machine.
 LONGEST = (
     "test_heat_run", "test_command_line", "test_oil_cycles", "test_limit_cycles", "test_given_flow_run", "test_streams",
-    "test_resumed_machines", "test_published_run", "test_inputs", "test_coefficients_alone", "test_work_lost",
+    "test_resumed", "test_published_run", "test_inputs", "test_coefficients_alone", "test_work_lost",
     "test_interruptions", "test_pressed_contact", "test_cosimulation",
     "test_bearing_sheet",
 )  # fmt: skip

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import math
 
 import numpy as np
 import pytest
-from paths import DATA
+from paths import rows_of
 
 from frbcli import load_case, rotation, squeeze, whirl
 from frbcli.bearing_tests.history import whirl_path
@@ -20,7 +19,7 @@ from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.scene.planning.kinematic_plan import kinematic_plan
 
-SQUEEZE = list(csv.DictReader((DATA / "squeeze-forces.csv").read_text().splitlines()))
+SQUEEZE = rows_of("squeeze-forces.csv")
 AT = "motion={eccentricity=0.6, angle='-60 deg', speed='20 Hz'}"
 
 

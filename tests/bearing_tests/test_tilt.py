@@ -4,13 +4,12 @@ row."""
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 
 import numpy as np
 import pytest
-from paths import DATA
+from paths import rows_of
 
 from frbcli import load_case_text, rotation, squeeze, whirl
 from frbcli.bearing_tests.kinematic import KinematicResult
@@ -19,7 +18,7 @@ from frbcli.errors import InputError
 from frbcli.film.cavitation.table import names
 from frbcli.scene.gate.gate import faults
 
-ROWS = list(csv.DictReader((DATA / "tilted-journal.csv").read_text(encoding="utf-8").splitlines()))
+ROWS = rows_of("tilted-journal.csv")
 REFERENCE = 1e-4  # of the largest force or moment of a row
 FINE, COARSE = "accuracy.mesh=[80, 240]", "accuracy.mesh=[40, 128]"
 

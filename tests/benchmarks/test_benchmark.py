@@ -1,4 +1,4 @@
-"""Speed against the naive way, measured in one process: `pytest -m timing -s` prints the ratios.
+"""Speed against the naive way, measured in one process: `pytest -m timing -s` prints the ratios; and warm commands.
 
 The naive way is what one writes first: scikit-fem assembly and a sparse solve at every call of the right-hand side, the
 pressure clipped at the quadrature points, and scipy's LSODA around it.
@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import math
 import os
+import resource
+import statistics
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
@@ -147,10 +149,9 @@ def test_jeffcott_run_up_against_the_naive_way(tmp_path: Path) -> None:
     assert naive * pace >= 5000
 
 
-@pytest.mark.parametrize("reading", ["absolute"])
-def test_penalty_run_up(reading: str, tmp_path: Path) -> None:
+def test_penalty_run_up(tmp_path: Path) -> None:
     """With the time that its table takes."""
-    case = load_case("jeffcott", ("film.cavitation=penalty", f"film.penalty.pressure={reading}"))
+    case = load_case("jeffcott", ("film.cavitation=penalty", "film.penalty.pressure=absolute"))
     run = best(lambda: runup(case, tmp_path / "run.h5", force=True))
     plan, tables = make_plan(case), []
     for _ in range(REPEATS):
@@ -158,7 +159,7 @@ def test_penalty_run_up(reading: str, tmp_path: Path) -> None:
         make_system(case, plan)
         tables.append(time.process_time() - began)
     pace = run.t_end_s / (run.cost["cpu_s"] + min(tables))
-    report(f"\npenalty, {reading}: table {min(tables):.2f} CPU s, with it {pace:.1f} simulated s per CPU s")
+    report(f"\npenalty, absolute: table {min(tables):.2f} CPU s, with it {pace:.1f} simulated s per CPU s")
     assert pace >= 3
 
 
@@ -225,3 +226,34 @@ def test_start_of_a_run(tmp_path: Path) -> None:
     report(f"; this machine was {slow:.1f} times slower than the one of the limits\n")
     assert cold < 30 * slow
     assert warm < 1 * slow_then
+
+
+LIBRARIES, CLICK = "import numpy, numba, h5py", "import click"
+RUN = ("runup", "jeffcott", "--force", "-o", "x.h5")
+PAIRS = 5
+ENVIRONMENT = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+
+
+def cpu_s(place: Path, words: Sequence[str]) -> float:
+    """CPU time of a process of Python in user and system."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run([sys.executable, *words], cwd=place, env=ENVIRONMENT, capture_output=True, check=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+@pytest.mark.parametrize(
+    ("words", "imports", "most"),
+    [((*RUN, "--no-picture"), LIBRARIES, 3.0), (RUN, LIBRARIES, 4.6), (("--help",), CLICK, 1.3)],
+)
+def test_a_warm_command_takes_few_times_the_imports_of_its_libraries(
+    words: tuple[str, ...], imports: str, most: float, tmp_path: Path
+) -> None:
+    """Medians of pairs, one after the other, with kernels and compiled modules on the disk."""
+    command = ["-m", "frbcli", *words]
+    for once in (command, ["-c", imports]):
+        cpu_s(tmp_path, once)
+    ratios = [cpu_s(tmp_path, command) / cpu_s(tmp_path, ["-c", imports]) for _ in range(PAIRS)]
+    ratio = statistics.median(ratios)
+    sys.stdout.write(f"\n{' '.join(words)}: {ratio:.2f} times {imports}, from {min(ratios):.2f} to {max(ratios):.2f}\n")
+    assert ratio <= most

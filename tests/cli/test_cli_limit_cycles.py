@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
-from rigid_cycles import UNIT_Hz, diagram, rigid
+from cycle_machines import UNIT_Hz, diagram, rigid
 
 import frbcli
 from frbcli.cli.main import run

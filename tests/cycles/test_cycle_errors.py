@@ -11,8 +11,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from cycle_machines import machine_of
-from rigid_cycles import WIDTH, UNIT_Hz, rigid
+from cycle_machines import WIDTH, UNIT_Hz, machine_of, rigid
+from marches import planned_system
 
 import frbcli
 from frbcli.case.schema import Case
@@ -24,8 +24,6 @@ from frbcli.cycles.limit_cycles import Family, resting_over
 from frbcli.cycles.method.equilibria import MachineCourse, resting_curve
 from frbcli.cycles.method.follower import FoldFollower, Follower, OtherMesh, hopf_error
 from frbcli.plot.machine.limit_cycles import limit_cycles_figure
-from frbcli.scene.machine.system import make_system
-from frbcli.scene.planning.plan import make_plan
 
 GAMMA, LOW, HIGH, SHARE = 4.538, 2.55, 2.76, 1.5
 ASKED = 2.7 * UNIT_Hz
@@ -47,7 +45,7 @@ def followed(case: Case, *others: Case) -> LimitCycles:
     """The diagram of a case without multipliers, with errors from the films of others."""
     low, high, asked = (2.0 * math.pi * speed for speed in (LOW * UNIT_Hz, HIGH * UNIT_Hz, ASKED))
     machine = machine_of(case)
-    resting = resting_curve(make_system(case, make_plan(case)), machine, low, high)
+    resting = resting_curve(planned_system(case), machine, low, high)
     own, *twins = (MachineCourse(each) for each in (machine, *map(machine_of, others)))
     meshes = tuple(OtherMesh(Follower(twin, low / high), SHARE) for twin in twins)
     walk = Walk(resting, Plain(own, low / high, asked=(asked / high,)), meshes)

@@ -9,11 +9,25 @@ from __future__ import annotations
 import math
 import tomllib
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
-from cycle_machines import cartridge, machine_of, ring_case, turbocharger
-from rigid_cycles import CLEARANCE, GRAVITY, MASS, RADIUS, WIDTH, UNIT_Hz, diagram, rigid
+from cycle_machines import (
+    CLEARANCE,
+    GRAVITY,
+    MASS,
+    RADIUS,
+    WIDTH,
+    UNIT_Hz,
+    cartridge,
+    diagram,
+    machine_of,
+    rigid,
+    ring_case,
+    turbocharger,
+)
+from differences import differences
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from scipy.optimize import fsolve
@@ -65,9 +79,8 @@ def test_derivatives_are_those_of_the_residual(make) -> None:  # type: ignore[no
     y = np.concatenate([packed(motion), [0.4, 0.8]])
     balance = Balance(machine, motion + 0.1)
     _, slope = balance(y)
-    step = 1e-6
-    columns = [(balance(y + step * unit)[0] - balance(y - step * unit)[0]) / (2.0 * step) for unit in np.eye(len(y))]
-    np.testing.assert_allclose(slope, np.transpose(columns), atol=1e-7 * np.abs(slope).max())
+    expected = differences(lambda y: balance(y)[0], y, 1e-6)
+    np.testing.assert_allclose(slope, expected, atol=1e-7 * np.abs(slope).max())
 
 
 @pytest.mark.parametrize(
@@ -329,6 +342,10 @@ def test_films_on_cells_enter_by_their_mean_over_the_angle(film: int) -> None:
     system = make_system(case, make_plan(case))
     mean, volume = smooth_films(system)[film]._replace(drop=0.0), system.films.with_fields[film]
     c, omega, bores = volume.section.clearance, 2000.0, len(volume.section.holes)
+
+    def force(d: np.ndarray, v: np.ndarray) -> np.ndarray:
+        return evaluate(mean, c, d, v, omega).force
+
     for eccentricity, v in ((0.2, (0.0, 0.0)), (0.6, (100.0, 50.0))):
         d = (eccentricity * math.cos(0.3), eccentricity * math.sin(0.3))
         found = evaluate(mean, c, np.multiply(d, c), np.multiply(v, c), omega)
@@ -339,15 +356,8 @@ def test_films_on_cells_enter_by_their_mean_over_the_angle(film: int) -> None:
             forces.append(turned(tuple(steady_force(volume, place, rate, omega).force), angle))
         expected = np.mean(forces, axis=0)
         assert np.linalg.norm(found.force - expected) < 0.01 * np.linalg.norm(expected)
-        step = 1e-6 * c
-        columns = []
-        for unit in step * np.eye(2):
-            ends = [
-                evaluate(mean, c, np.multiply(d, c) + side * unit, np.multiply(v, c), omega).force for side in (1, -1)
-            ]
-            columns.append((ends[0] - ends[1]) / (2.0 * step))
-        by_d = found.by_displacement
-        np.testing.assert_allclose(by_d, np.transpose(columns), atol=1e-6 * np.abs(by_d).max())
+        by_d = differences(partial(force, v=np.multiply(v, c)), np.multiply(d, c), 1e-6 * c)
+        np.testing.assert_allclose(found.by_displacement, by_d, atol=1e-6 * np.abs(by_d).max())
 
 
 @pytest.mark.nightly

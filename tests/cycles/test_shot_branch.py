@@ -1,4 +1,5 @@
-"""Branches by shooting on motions whose cycles are known: their Hopf points, folds, flips and torus points."""
+"""Branches of cycles by shooting, on motions whose cycles are known; curves that are followed through folds, and
+multipliers of cycles."""
 
 from __future__ import annotations
 
@@ -8,18 +9,20 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cycle_machines import CLEARANCE, GRAVITY, MASS, UNIT_Hz, diagram, machine_of, rigid
 from known_flows import KnownFlow, round_cycles
+from marches import planned_system
 from numba import njit
-from rigid_cycles import CLEARANCE, GRAVITY, MASS, UNIT_Hz, diagram, rigid
 
+from frbcli.cycles.method.balance import multipliers, packed, state_space
+from frbcli.cycles.method.continuation import Place, Strides, corrected, fold_between, follow, step_from
+from frbcli.cycles.method.equilibria import resting_curve
 from frbcli.cycles.method.machine import smooth_films
 from frbcli.cycles.shooting.branch import OtherCells, follow_shots, shot_errors
 from frbcli.cycles.shooting.fixed_point import SlowSpace
 from frbcli.cycles.shooting.rest import RestThreshold, located, thresholds
 from frbcli.cycles.shooting.shots import AT_REST_DIFFERENCE, Shooting, Shot, multipliers_of
 from frbcli.film.rectangles.film_force import film_force
-from frbcli.scene.machine.system import make_system
-from frbcli.scene.planning.plan import make_plan
 
 
 def started(shooting: Shooting, flow: KnownFlow, begun: tuple[float, float]) -> tuple[RestThreshold, Shot]:
@@ -114,7 +117,7 @@ def rigid_flow(gamma: float) -> KnownFlow:
     """The rigid rotor in short bearings, integrated in time. Its damping is large for the steps that shooting asks
     for: with 256 in a period the cycle with an eccentricity of 0.81 was found at 0.75."""
     case = rigid(gamma, 2.4, 2.9)
-    (film,) = smooth_films(make_system(case, make_plan(case)))
+    (film,) = smooth_films(planned_system(case))
     return KnownFlow(
         lambda z, omega: rigid_rate(film, z, omega),
         CLEARANCE,
@@ -173,3 +176,64 @@ def test_a_multiplier_beside_the_trivial_one_is_told_by_the_sum_of_both() -> Non
         found = multipliers_of(SlowSpace(np.eye(3), matrix, np.zeros((3, 2))), np.array([1.0, 0.0, 0.0]))
         np.testing.assert_allclose(found.values, [1.0, 1.03, 0.5], atol=1e-9)
         assert found.unstable == 1
+
+
+def test_a_curve_is_followed_through_its_fold() -> None:
+    """x^2 + p^2 = 1 from (1, 0): p has its largest value 1 at x = 0, and the curve comes back."""
+
+    def circle(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return np.array([y @ y - 1.0]), 2.0 * y[None]
+
+    start = Place(np.array([1.0, 0.0]), np.array([0.0, 1.0]))
+    steps = list(follow(circle, start, Strides(0.05, 1e-6, 0.2, 60)))
+    assert max(abs(place.y @ place.y - 1.0) for place, _ in steps) < 1e-12
+    assert min(place.y[0] for place, _ in steps) < -0.9
+    before = start
+    for place, length in steps:
+        if before.tangent[-1] * place.tangent[-1] < 0.0:
+            fold = fold_between(circle, before, length)
+            assert fold is not None
+            np.testing.assert_allclose(fold.y, [0.0, 1.0], atol=1e-8)
+            break
+        before = place
+    else:
+        pytest.fail("no fold on the way")
+
+
+def test_a_step_does_not_change_to_a_part_of_the_curve_that_passes_close_by() -> None:
+    """Two straight lines p = x and p = x + 0.02: a guess that is nearer to the other one is not taken for it."""
+
+    def lines(y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        a = y[1] - y[0]
+        return np.array([a * (a - 0.02)]), np.array([[-(2.0 * a - 0.02), 2.0 * a - 0.02]])
+
+    start = corrected(lines, np.array([0.0, 0.0]), np.array([0.6, 0.8]))
+    assert start is not None
+    astray = Place(start.y, np.array([0.0, 1.0]), side=start.side)
+    assert step_from(lines, astray, 0.03) is None
+    assert step_from(lines, start, 0.03) is not None
+
+
+def test_multipliers_next_to_rest_are_those_of_the_eigenvalues() -> None:
+    """A cycle of almost no size: exp(lambda T) of the eigenvalues at the Hopf point, 1 for the critical pair."""
+    case = rigid(1.313, 2.4, 2.9)
+    machine = machine_of(case)
+    system = planned_system(case)
+    (hopf,) = resting_curve(system, machine, 2.0 * math.pi * case.speed.start, 2.0 * math.pi * case.speed.end).hopf
+    motion = np.zeros((3, 2), dtype=complex)
+    motion[0], motion[1] = hopf.equilibrium.u, 1e-7 * hopf.mode
+    y = np.concatenate([packed(motion), [hopf.nu / machine.pace, hopf.equilibrium.omega / machine.pace]])
+    found = np.sort(np.abs(multipliers(machine, state_space(machine), y).values))
+    expected = np.sort(np.abs(np.exp(2.0 * math.pi / hopf.nu * hopf.equilibrium.eigenvalues)))
+    np.testing.assert_allclose(found, expected, atol=1e-6)
+
+
+@pytest.mark.parametrize("gamma", [4.538, 1.313])
+def test_the_trivial_multiplier_is_one(gamma: float) -> None:
+    """To 1e-6, at folds as well, where a second multiplier is 1."""
+    points = diagram(gamma, 2.4, 2.9).branches[0].points
+    for point in points:
+        assert abs(point.multipliers[0] - 1.0) < 1e-6
+        if point.kind == "fold":
+            assert np.abs(point.multipliers[1:] - 1.0).min() < 1e-5
+    assert any(point.kind == "fold" for point in points)

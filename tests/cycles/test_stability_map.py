@@ -8,8 +8,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from cycle_machines import machine_of
-from rigid_cycles import UNIT_Hz, diagram, rigid
+from cycle_machines import UNIT_Hz, diagram, machine_of, rigid
+from marches import planned_system
 from scipy.interpolate import CubicSpline
 
 import frbcli
@@ -19,8 +19,6 @@ from frbcli.cycles.method.equilibria import MachineCourse, resting_curve
 from frbcli.cycles.method.follower import Cycle
 from frbcli.cycles.stability_map import Across, StabilityMap
 from frbcli.cycles.unbalance import Synchronous, synchronous_response
-from frbcli.scene.machine.system import make_system
-from frbcli.scene.planning.plan import make_plan
 
 
 @pytest.mark.nightly  # its rows are diagrams, see the next test
@@ -106,7 +104,7 @@ def test_films_with_tables_have_curves_of_folds_as_well() -> None:
     places = {round(point.value, 6): point.speed_Hz for point in fold.points}  # curves begin on the border
     line = CubicSpline(*zip(*sorted(places.items()), strict=True))
     assert float(line(36.2)) == pytest.approx(frbcli.limit_cycles(case).of("fold")[0].speed_Hz, rel=1e-4)
-    tables = [make_system(one, make_plan(one)).films.loop[0].table for one in (case, frbcli.load_case("jeffcott"))]
+    tables = [planned_system(one).films.loop[0].table for one in (case, frbcli.load_case("jeffcott"))]
     assert tables[0] is tables[1]
 
 
@@ -114,7 +112,7 @@ def response_of(gamma: float, unbalance: str) -> dict[str, Cycle]:
     """Where the synchronous response changes its stability, by the kind."""
     case = rigid(gamma, 2.5, 2.72).with_settings(unbalance)
     machine, speeds = machine_of(case), (2.0 * math.pi * 2.5 * UNIT_Hz, 2.0 * math.pi * 2.72 * UNIT_Hz)
-    resting = resting_curve(make_system(case, make_plan(case)), machine, *speeds)
+    resting = resting_curve(planned_system(case), machine, *speeds)
     follower = Synchronous(MachineCourse(machine), *(speed / machine.pace for speed in speeds))
     found = synchronous_response(follower, resting.points[-1])
     assert found is not None

@@ -6,12 +6,11 @@ it says by up to 0.7 %, with 48 x 12 to 240 x 60 cells alike: its positions are 
 
 from __future__ import annotations
 
-import csv
 import math
 
 import numpy as np
 import pytest
-from paths import DATA
+from paths import rows_of
 
 from frbcli import load_case, rotation
 from frbcli.bearing_tests import steady_film as resting
@@ -27,14 +26,9 @@ MESH = "accuracy.mesh=[24, 96]"
 ECCENTRICITY, ATTITUDE_DEG, PRESSURE = 1e-2, 0.2, 1e-2
 
 
-def rows(name: str) -> list[dict[str, str]]:
-    lines = (DATA / name).read_text(encoding="utf-8").splitlines()
-    return list(csv.DictReader(line for line in lines if not line.startswith("#")))
-
-
 POSITIONS = [
     row
-    for row in rows("equilibrium-models.csv")
+    for row in rows_of("equilibrium-models.csv")
     if (row["clearance_um"], row["speed_Hz"]) in {("40", "10"), ("40", "60"), ("35", "120")}
 ]
 
@@ -71,9 +65,8 @@ def test_journal_rests_where_an_independent_program_says(row: dict[str, str]) ->
     assert found.loads.p_max == pytest.approx(1e5 * float(row["pmax_bar"]), rel=PRESSURE)
 
 
-@pytest.mark.parametrize("ends", ["free-to-air"])
-def test_elrods_film_without_supply_carries_nothing_and_says_so(ends: str) -> None:
-    case = load_case("bearing", [f"bearing.ends={ends}"])
+def test_elrods_film_without_supply_carries_nothing_and_says_so() -> None:
+    case = load_case("bearing", ["bearing.ends=free-to-air"])
     with pytest.raises(NotConverged, match="carries 0 N, at any eccentricity"):
         resting_displacement(case, kinematic_plan(case, "elrod"), 29.9, 40.0 * math.pi)
 

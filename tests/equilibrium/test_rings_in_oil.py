@@ -1,4 +1,5 @@
-"""Small motions of machines whose rings turn in films that keep their oil: the speeds of the rings follow them."""
+"""Machines whose rings turn in films that keep their oil: small motions, which the speeds of the rings follow, rest,
+and what is known of how the oil follows."""
 
 from __future__ import annotations
 
@@ -8,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from films import ROUGH
-from marches import march, rigid_shaft, seen_between, start
+from marches import march, planned_system, rigid_shaft, seen_between, start
+from numpy.typing import NDArray
 
 import frbcli
 from frbcli.case.schema import Case
@@ -17,16 +19,17 @@ from frbcli.cycles.shooting.rest import settled
 from frbcli.cycles.shooting.shots import Shooting
 from frbcli.equilibrium import dynamic_films, static_films
 from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator
-from frbcli.equilibrium.resting import resting_position
+from frbcli.equilibrium.resting import ForceBalance, RestEquations, resting_position
 from frbcli.equilibrium.ring_speed import across, drags, ring_torques
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.film.cells.linearised import DynamicStiffness, without_memory
+from frbcli.film.rectangles.film import FilmForce
 from frbcli.linear.response import forced_motion
 from frbcli.linear.stability import stability_points
 from frbcli.linear.stability_point import eigenvalues, machine_rotor, point_at_rest
+from frbcli.rotor.assembly import sprung
 from frbcli.rotor.loads import speed_profile
-from frbcli.scene.machine.system import make_system
-from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.machine.system import System
 from frbcli.solve.state import Control
 
 SPEED = 60.0
@@ -136,10 +139,9 @@ def test_poles_of_a_projection_that_move_nothing_are_no_motions_of_the_machine()
     assert [value.real for value, _ in found] == pytest.approx([0.0, 0.0], abs=1e-9)
 
 
-@pytest.mark.parametrize("factor", ["local"])
-def test_missing_oil_lets_a_ring_turn_as_in_the_time_loop(factor: str) -> None:
+def test_missing_oil_lets_a_ring_turn_as_in_the_time_loop() -> None:
     """The torques balance with the oil that the settled films have, less of it in the outer one."""
-    machine = at_rest("2 bar", f"film.cavitation_factor={factor}")
+    machine = at_rest("2 bar", "film.cavitation_factor=local")
     position, system = machine.at_rest.position, machine.system
     inner, outer = system.films.sheared_oil(position.journals, position.films)
     assert 0.9 < outer < inner - 1e-3
@@ -156,7 +158,7 @@ def test_a_ring_rests_as_it_turns_in_the_time_loop(factor: str) -> None:
     """On the same cells; with full films it would turn with 0.1723 of the speed of the rotor. Its speed settles with
     15 1/s: a ratio that is wrong by 1 % is off by 0.9 % after the run."""
     case = ring_case("2 bar", "two-phase", "accuracy.mesh=[6,48]", f"film.cavitation_factor={factor}")
-    system = make_system(case, make_plan(case))
+    system = planned_system(case)
     rest, profile = resting_position(system, OMEGA), speed_profile((0.0, 0.15), (OMEGA, OMEGA))
     control = Control(1e-7, 24.0, 0.01, 0.01, 0.9999, 0.0)
     after = march(system, profile, control, start(system, profile, rest.displacements, rest.velocities(system)))
@@ -221,7 +223,7 @@ def tilting_shaft(law: str, mesh: str = "[8,96]") -> Case:
 
 def seen_in_the_loop(case: Case, omega: float, time: float, disturbance: float = 1e-3) -> np.ndarray:
     """Eigenvalues in 1/s of what lies between two runs of 200 steps of output. disturbance: over the clearance."""
-    system = make_system(case, make_plan(case))
+    system = planned_system(case)
     rest, spins = resting_position(system, omega), list(system.spins)
     q = np.random.default_rng(1).normal(size=system.rotor.size)
     q *= disturbance * system.clearances[0] / np.abs(system.rotor.journals[:, :2] @ q).max()
@@ -230,3 +232,59 @@ def seen_in_the_loop(case: Case, omega: float, time: float, disturbance: float =
     v = np.zeros_like(q)
     v[spins] = 3e-3 * middle[1][spins]
     return seen_between(system, omega, middle, (q, v), time, steps=200, lag=4, count=7, settled=25)
+
+
+AT_150_Hz = 2.0 * math.pi * 150.0
+PLACE = np.array([2.7e-5, -3.5e-6])
+
+
+@pytest.fixture(scope="module")
+def system() -> System:
+    """A floating ring in two-phase films between circumferential grooves, the outer one with missing oil."""
+    groove = '{kind="circumferential-groove", pressure="2 bar"}'
+    supplies = [f"bearing.{film}.supply={groove}" for film in ("inner", "outer")]
+    case = frbcli.load_case("floating-ring", [*supplies, "film.cavitation=two-phase"])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(static_films, "CELLS", (48, 6))
+        patch.setattr(static_films, "COARSER", ((24, 4),))
+        return static_films.static_films(case).system
+
+
+def test_a_film_foresees_its_oil(system: System) -> None:
+    """Of one place and speed the film of others is foreseen to first order: its oil, force and oil fractions."""
+    total, moved, faster = 200.0, np.array([3e-9, -2e-9]), 0.02
+    here = system.films.force(1, PLACE, np.zeros(2), total)
+    there = system.films.force(1, PLACE + moved, np.zeros(2), total + faster)
+    assert here.slopes is not None
+    assert here.field is not None
+    assert here.fraction is not None
+    assert here.fraction.min() < 0.9
+    foreseen = here.foreseen(PLACE + moved, total + faster)
+    for name in ("field", "fraction"):
+        before, found, expected = (np.asarray(getattr(film, name)) for film in (here, foreseen, there))
+        assert np.abs(found - expected).sum() < 2e-3 * np.abs(expected - before).sum()
+    change = here.by_displacement @ moved + here.slopes.force * faster
+    np.testing.assert_allclose(change, there.force - here.force, rtol=2e-3)
+
+
+def test_slopes_know_the_oil_that_goes_missing(system: System) -> None:
+    """Journals that move, and a ring that turns otherwise, change the oil of the films, and so forces and torques. By
+    central differences, the films settled at each place."""
+    equations = RestEquations(system, AT_150_Hz)
+    held, place = equations.held, np.array([2.0e-6, -3.0e-7, 2.6e-5, -2.8e-6])
+    unknowns = equations.with_rings(held.shape + held.following @ place)
+
+    def settled(moved: NDArray[np.float64]) -> ForceBalance[tuple[FilmForce, ...]]:
+        found = equations.balance(moved, ())
+        for _ in range(3):
+            found = equations.balance(moved, found.films)
+        return found
+
+    here, n, (_, stiffness) = settled(unknowns), system.rotor.size, sprung(system.rotor)
+    stiffness[-1] = 0.0
+    for column in (*np.flatnonzero(system.rotor.journals.any(axis=(0, 1))), n - 1):  # no film sees the disk
+        step = 2e-10 * np.eye(n)[column]
+        ahead, behind = (settled(unknowns + side * step).residual for side in (1.0, -1.0))
+        known, found = (each + stiffness[:, column] for each in ((ahead - behind) / 4e-10, here.slope[:, column]))
+        for rows in (np.arange(n - 1), [n - 1]):  # forces, and the torque on the ring
+            np.testing.assert_allclose(found[rows], known[rows], atol=2e-3 * np.abs(known[rows]).max())

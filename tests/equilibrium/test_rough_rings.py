@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from differences import differences
 from films import ROUGH
-from marches import march, start
+from marches import march, planned_system, start
 
 import frbcli
 from frbcli.cycles.method.balance import state_space
@@ -20,8 +21,7 @@ from frbcli.film.roughness.asperities import make_asperities, rub
 from frbcli.film.roughness.contact import BY_V_X, BY_X, VALUE, Rubbing
 from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.loads import speed_profile
-from frbcli.scene.machine.system import System, make_system
-from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.machine.system import System
 from frbcli.solve.stage.forces import RoughContact
 from frbcli.solve.state import Control
 
@@ -38,7 +38,7 @@ STEPS = np.array([1e-11, 1e-11, 1e-8, 1e-8, 1e-6, 1e-6])
 @pytest.fixture(scope="module")
 def system() -> System:
     case = frbcli.load_case("floating-ring", FILMS)
-    return make_system(case, make_plan(case))
+    return planned_system(case)
 
 
 def coefficients(films: FilmsAtRest) -> tuple[np.ndarray, np.ndarray]:
@@ -73,12 +73,10 @@ def test_summits_have_the_slopes_of_their_forces_and_torques() -> None:
         own = rub(SURFACES, 0, CLEARANCE, *motion.tolist())
         np.testing.assert_allclose(each[:, VALUE], [own.f_x, own.f_y, own.torque, own.shell_torque], rtol=1e-13)
         np.testing.assert_allclose(each[:2, BY_X:BY_V_X].ravel(), own[2:6], rtol=1e-13)
-    for column, step in enumerate(STEPS):
-        moved = np.zeros(6)
-        moved[column] = step
-        change = (rubbing.slopes(MOTIONS + moved) - rubbing.slopes(MOTIONS - moved))[:, :, VALUE] / (2.0 * step)
+    changes = differences(lambda by: rubbing.slopes(MOTIONS + by)[:, :, VALUE], np.zeros(6), STEPS)
+    for column in range(6):
         slopes = found[:, :, 1 + column]
-        np.testing.assert_allclose(change, slopes, rtol=1e-4, atol=1e-6 * np.abs(slopes).max())
+        np.testing.assert_allclose(changes[..., column], slopes, rtol=1e-4, atol=1e-6 * np.abs(slopes).max())
 
 
 @pytest.mark.parametrize(("speed", "stuck"), [LIFTING, (30.0, True)])
@@ -92,16 +90,11 @@ def test_loads_of_cycles_have_exact_derivatives_by_the_motions_of_rings(
     u[0, -1] += 0.05 / omega
     v = np.array([[0.3, -0.2, 0.01, 0.02, 0.0]])
     found = film_loads(machine, u, v, omega)
-    for name, base, slopes, steps in (("u", u, found.by_u, (1e-8,) * 4 + (1e-8,)), ("v", v, found.by_v, (1e-6,) * 4)):
-        for column, step in enumerate(steps):
-            moved = np.zeros_like(base)
-            moved[0, column] = step
-            ahead, behind = (
-                film_loads(machine, *((base + side * moved, v) if name == "u" else (u, base + side * moved)), omega)
-                for side in (1.0, -1.0)
-            )
-            change = (ahead.values - behind.values)[0] / (2.0 * step)
-            np.testing.assert_allclose(change, slopes[0, :, column], rtol=2e-4, atol=1e-5 * np.abs(change).max())
+    by_u = differences(lambda moved: film_loads(machine, moved[None], v, omega).values[0], u[0], 1e-8)
+    by_v = differences(lambda moved: film_loads(machine, u, moved[None], omega).values[0], v[0], 1e-6)
+    for changes, slopes in ((by_u, found.by_u[0]), (by_v[:, :4], found.by_v[0])):
+        for change, slope in zip(changes.T, slopes.T, strict=False):
+            np.testing.assert_allclose(change, slope, rtol=2e-4, atol=1e-5 * np.abs(change).max())
 
 
 @pytest.mark.parametrize(

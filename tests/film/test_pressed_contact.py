@@ -9,7 +9,8 @@ from collections.abc import Callable
 import films
 import numpy as np
 import pytest
-from marches import rigid
+from differences import differences
+from marches import planned_system, rigid
 
 from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
@@ -22,7 +23,7 @@ from frbcli.film.contact_gap import KEPT, closes_freely_until, contact_gap
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.runs.march import March
-from frbcli.scene.machine.system import Segment, System, make_system
+from frbcli.scene.machine.system import Segment, System
 from frbcli.scene.planning.cell_choice import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.films.cells import EMPTY, OPEN, cell_response, move_even
@@ -55,11 +56,7 @@ def test_the_felt_velocity_is_the_rate_of_the_felt_displacement(begins: float, d
     d, v = films.polar(begins + depth * (1.0 - begins), 0.7), np.array([3.0, -8.0])
     felt = contact_gap(begins, *d, *v)
     follows, turns = (np.array([[felt[i], felt[i + 2]], [felt[i + 2], felt[i + 1]]]) for i in (4, 7))
-    step, columns = 1e-7 * (1.0 - begins), []
-    for side in step * np.eye(2):
-        ahead, behind = (np.array(contact_gap(begins, *place, *v)[:4]) for place in (d + side, d - side))
-        columns.append((ahead - behind) / (2.0 * step))
-    measured = np.column_stack(columns)
+    measured = differences(lambda place: contact_gap(begins, *place, *v)[:4], d, 1e-7 * (1.0 - begins))
     assert follows == pytest.approx(measured[:2], abs=1e-5)
     assert np.array(felt[2:4]) == pytest.approx(follows @ v, rel=1e-12)
     assert turns == pytest.approx(measured[2:], abs=1e-4 * np.hypot(*v) / (1.0 - begins))
@@ -100,7 +97,7 @@ def system_of(kind: str) -> System:
         bearing = films.KINDS[kind][0]
         return films.system_of(rigid(6.0, 0.0, 0.0), (bearing,), (films.film_of(*films.KINDS[kind]),))
     case = load_case(CASES[kind][0], CASES[kind][1:])
-    return make_system(case, make_plan(case))
+    return planned_system(case)
 
 
 def rows_of(system: System, d: Array, v: Array, omega: float, g: float) -> Array:
@@ -174,11 +171,8 @@ def test_derivatives_are_those_of_the_force(kind: str, eccentricity: float) -> N
     ask, clearance = pressed(kind, 0.995, omega, g, stiffness), system_of(kind).clearances[0]
     d, v, size = eccentricity * AHEAD, 1.0 * AHEAD + 20.0 * ASIDE, 1e-3 if "cells" in kind else 1e-5
     ask(d, v)  # cells tell the derivatives of where they were when they were asked
-    exact, measured = ask(d, v), []
-    for side in size * np.eye(2):
-        ahead, behind = ask(d + g * side, v + side), ask(d - g * side, v - side)
-        measured.append((ahead[FORCE] - behind[FORCE]) / (2.0 * size * clearance))
-    found = np.stack(measured)
+    exact = ask(d, v)
+    found = differences(lambda u: ask(d + g * (u - v), u)[FORCE], v, size).T / clearance
     near = 0.02 if "cells" in kind else 1e-3  # those of a film are those of its integral, not of the sum for it
     assert found == pytest.approx(exact[[BY_X, BY_Y]], rel=near, abs=near * np.abs(found).max())
 
@@ -218,13 +212,12 @@ def test_nothing_is_changed_where_contact_ends_the_run(kind: str, eccentricity: 
 
 
 def test_the_shell_pushes_back_along_the_line_of_centres() -> None:
-    clearance, stiffness, step = 35e-6, 1e9, 1e-7
+    clearance, stiffness = 35e-6, 1e9
     d = 1.01 * AHEAD
     f_x, f_y, xx, yy, xy = push_back(*d, clearance, 0.995, stiffness)
     assert np.array([f_x, f_y]) == pytest.approx(-stiffness * clearance * 0.015 * AHEAD)
-    for side, falls in ((np.array([step, 0.0]), (xx, xy)), (np.array([0.0, step]), (xy, yy))):
-        ahead, behind = (np.array(push_back(*at, clearance, 0.995, stiffness)[:2]) for at in (d + side, d - side))
-        assert (behind - ahead) / (2.0 * step) == pytest.approx(np.array(falls), rel=1e-6)
+    found = differences(lambda at: push_back(*at, clearance, 0.995, stiffness)[:2], d, 1e-7)
+    assert -found == pytest.approx(np.array([[xx, xy], [xy, yy]]), rel=1e-6)
     assert push_back(0.995, 0.0, clearance, 0.995, stiffness) == (0.0,) * 5
     assert push_back(*d, clearance, 0.995, 0.0) == (0.0,) * 5
 
@@ -234,7 +227,7 @@ def test_the_shell_pushes_back_along_the_line_of_centres() -> None:
 
 def cells_of(*settings: str) -> System:
     case = load_case(BASE, ["bearing.supply.pressure=4 bar", "accuracy.mesh=[6,48]", *settings])
-    return make_system(case, make_plan(case))
+    return planned_system(case)
 
 
 def settle(system: System, felt: Array, w: Array, past: Array, g: float, leaps: bool) -> tuple[int, Array, Array]:
@@ -289,10 +282,9 @@ def test_cells_of_a_closing_gap_settle() -> None:
     assert settle(system, felt, w, past, g, leaps=True)[0] == 24
 
 
-@pytest.mark.parametrize("touches", [0.9999])
-def test_the_force_of_cells_has_no_jump_over_the_contact(touches: float) -> None:
+def test_the_force_of_cells_has_no_jump_over_the_contact() -> None:
     """A journal at rest anywhere from before the contact to deep in the shell, as above but each film for itself."""
-    system, g, begins = cells_of(), 2e-5, closes_freely_until(touches)
+    system, g, begins = cells_of(), 2e-5, closes_freely_until(0.9999)
     ring = system.films.loop.ring[0]  # type: ignore[union-attr]
     n = np.array([-ring[SIN, 14], ring[COS, 14]])
     past = np.repeat(gaps(system, (begins - 1.2 * (1.0 - begins)) * n) / g, 6, axis=1)

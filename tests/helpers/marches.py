@@ -240,6 +240,11 @@ def rigid_shaft(*more: str) -> Case:
     return load_case("jeffcott", [*settings, *more])
 
 
+def planned_system(case: Case) -> System:
+    """The machine of a case as its plan has it."""
+    return make_system(case, make_plan(case))
+
+
 def planned(case: Case, **changes: object) -> tuple[Plan, System]:
     """The plan of a case, with changes, and the system that follows from it."""
     plan = replace(make_plan(case), **changes)  # type: ignore[arg-type]

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import csv
 import math
 
-from paths import DATA
+from paths import rows_of
 
 Row = dict[str, float]
 CASE = """
@@ -28,8 +27,7 @@ OMEGA = 2.0 * math.pi * 50.0
 
 
 def printed(name: str) -> list[Row]:
-    lines = [line for line in (DATA / name).read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
-    return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(lines)]
+    return [{key: float(value) for key, value in row.items()} for row in rows_of(name)]
 
 
 def grooves(count: int, position: float, opening: float) -> str:

@@ -1,12 +1,10 @@
-"""Films on volumes for the tests: the rows of film-forces-all.csv, which an independent program has made."""
+"""Films on volumes for the tests, with the motions and laws of film-forces-all.csv, of an independent program."""
 
 from __future__ import annotations
 
-import csv
 import math
 
 import numpy as np
-from paths import DATA
 
 from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds
 from frbcli.film.cavitation.law import Law
@@ -19,11 +17,6 @@ Row = dict[str, str]
 
 RADIUS, WIDTH, CLEARANCE, VISCOSITY, AMBIENT = 12.5e-3, 20e-3, 40e-6, 10e-3, 1e5
 GROOVE_OPENING = math.radians(15.0)
-
-
-def reference_rows() -> list[Row]:
-    path = DATA / "film-forces-all.csv"
-    return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
 
 
 def section_of(supply: str, pressure: float = AMBIENT, ends: str = "oil-bath") -> Section:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import tomllib
-from functools import cache
+from functools import partial
 
 import numpy as np
+from cycle_machines import UNIT_Hz, rigid
 from numpy.typing import NDArray
-from paths import DATA
+from paths import rows_of
 from printed_sheets import CASE, OMEGA, grooves, printed
-from rigid_cycles import UNIT_Hz, rigid
 
 import frbcli
 from frbcli.linear.sheets.bearing import bearing_sheet, sommerfeld_chart
@@ -79,11 +78,10 @@ def ocvirk() -> list[Row]:
         rest = 1.0 - eps**2
         load = VISCOSITY * OMEGA * radius * width**3 / (4 * clearance**2) * eps / rest**2
         load *= math.sqrt(math.pi**2 * rest + 16 * eps**2)
-        name = f"short bearing, eccentricity {eps:g}"
         attitude = math.degrees(math.atan(math.pi * math.sqrt(rest) / (4 * eps)))
-        source = "DuBois, Ocvirk 1953"
-        rows.append(Row(name, source, CLOSED, "load, N", load, load_of(state), state.force_error, 1e-6, SHORT))
-        rows.append(Row(name, source, CLOSED, "attitude, deg", attitude, state.attitude_deg, math.nan, 1e-6))
+        row = partial(Row, f"short bearing, eccentricity {eps:g}", "DuBois, Ocvirk 1953", CLOSED)
+        rows.append(row("load, N", load, load_of(state), state.force_error, 1e-6, SHORT))
+        rows.append(row("attitude, deg", attitude, state.attitude_deg, math.nan, 1e-6))
     return rows
 
 
@@ -96,34 +94,15 @@ def short_thresholds() -> list[Row]:
         found = stability(rigid(gamma, 0.8 * expected, 1.2 * expected)).threshold
         assert found is not None
         error = found.speed_uncertainty_Hz / found.speed_Hz
-        quantity = "threshold sqrt(C/g)"
-        name = f"rigid rotor in short bearings, eccentricity {eps:g}"
-        rows.append(
-            Row(
-                name,
-                "independent program",
-                PROGRAM,
-                quantity,
-                expected,
-                found.speed_Hz / UNIT_Hz,
-                error,
-                1e-4,
-                SHORT,
-            )
-        )
+        row = partial(Row, f"rigid rotor in short bearings, eccentricity {eps:g}", "independent program", PROGRAM)
+        rows.append(row("threshold sqrt(C/g)", expected, found.speed_Hz / UNIT_Hz, error, 1e-4, SHORT))
     return rows
 
 
 def squeeze_film_damper() -> list[Row]:
     """A circle about the centre: half of the film cavitates."""
-    radius, width, clearance, viscosity, omega, eps = (
-        0.5 * 5.1 * 0.0254,
-        0.9 * 0.0254,
-        0.003 * 0.0254,
-        0.02797,
-        1947.787,
-        0.5,
-    )
+    inch, viscosity, omega, eps = 0.0254, 0.02797, 1947.787, 0.5
+    radius, width, clearance = 0.5 * 5.1 * inch, 0.9 * inch, 0.003 * inch
     text = CASE.format(viscosity=1e3 * viscosity, width=1e3 * width, diameter=2e3 * radius, clearance=1e6 * clearance,
                        supply='{ kind = "none" }', load=1)  # fmt: skip
     settings = ["film.theory=short", "film.cavitation=half-sommerfeld"]
@@ -141,22 +120,11 @@ def squeeze_film_damper() -> list[Row]:
     for quantity, value, own, ross in zip(
         ("stiffness, N/m", "damping, N s/m"), found, closed, (1.69362187e8, 118283.8359), strict=True
     ):
-        rows.append(
-            Row(name, "San Andres, notes; Childs 1993", CLOSED, quantity, own, value, result.force_error, 1e-6, SHORT)
-        )
-        rows.append(
-            Row(
-                name,
-                "ROSS, damper test",
-                PROGRAM,
-                quantity,
-                ross,
-                value,
-                result.force_error,
-                2e-4,
-                "Its viscosity has four digits.",
-            )
-        )
+        for source, kind, expected, bound, why in (
+            ("San Andres, notes; Childs 1993", CLOSED, own, 1e-6, SHORT),
+            ("ROSS, damper test", PROGRAM, ross, 2e-4, "Its viscosity has four digits."),
+        ):
+            rows.append(Row(name, source, kind, quantity, expected, value, result.force_error, bound, why))
     return rows
 
 
@@ -165,23 +133,16 @@ def sommerfeld() -> list[Row]:
     a longer bearing carries more is free of its ends."""
     radius, clearance, eps = 0.05, 1e-4, 0.5
     width = 40 * radius
-    state, longer = (
-        chart(
-            film(each, 2 * radius, clearance, '{ kind = "none" }'),
-            eps,
-            "film.theory=finite",
-            "film.cavitation=sommerfeld",
-        )
-        for each in (width, 2 * width)
-    )
+    films = (film(each, 2 * radius, clearance, '{ kind = "none" }') for each in (width, 2 * width))
+    state, longer = (chart(each, eps, "film.theory=finite", "film.cavitation=sommerfeld") for each in films)
     found = load_of(longer) - load_of(state)
     error = (load_of(longer) + load_of(state)) / found * longer.force_error
     load = VISCOSITY * OMEGA * radius * width * (radius / clearance) ** 2
     load *= 12 * math.pi * eps / ((2 + eps**2) * math.sqrt(1 - eps**2))
-    name = "long bearing: 40 diameters less 20, eccentricity 0.5"
+    row = partial(Row, "long bearing: 40 diameters less 20, eccentricity 0.5", "Sommerfeld 1904", CLOSED)
     return [
-        Row(name, "Sommerfeld 1904", CLOSED, "load, kN", load / 1e3, found / 1e3, error, 2e-3),
-        Row(name, "Sommerfeld 1904", CLOSED, "attitude, deg", 90.0, state.attitude_deg, math.nan, 1e-4),
+        row("load, kN", load / 1e3, found / 1e3, error, 2e-3),
+        row("attitude, deg", 90.0, state.attitude_deg, math.nan, 1e-4),
     ]
 
 
@@ -202,6 +163,12 @@ def under(
     return bearing_sheet(film(width, 0.1, clearance * preloaded, supply, load, lobes)).points[0]
 
 
+def eccentricity(name: str, source: str, state: FilmState, printed: float, bound: float, why: str = "") -> Row:
+    """The row of a printed eccentricity at rest."""
+    found = state.eccentricity
+    return Row(name, source, PRINTED, "eccentricity", printed, found, state.place_error / found, bound, why)
+
+
 def of_table(
     name: str, source: str, state: FilmState, clearance: float, row: dict[str, float], share: float, why: str = ""
 ) -> list[Row]:
@@ -218,39 +185,18 @@ def of_table(
 
 def butenschoen() -> list[Row]:
     rows = []
-    for row in printed("butenschoen.csv"):
-        if row["eccentricity"] != 0.5 or row["width_over_diameter"] not in (1.0, 0.5, 0.25):
+    for line in printed("butenschoen.csv"):
+        slenderness, number, attitude = (line[x] for x in ("width_over_diameter", "sommerfeld_number", "attitude_deg"))
+        if line["eccentricity"] != 0.5 or slenderness not in (1.0, 0.5, 0.25):
             continue
         radius, clearance = 0.05, 1e-4
-        case = film(
-            2 * radius * row["width_over_diameter"], 2 * radius, clearance, grooves(1, row["attitude_deg"], 0.5)
-        )
-        state = chart(case, 0.5)
-        name = f"plain bearing, B/D {row['width_over_diameter']:g}, eccentricity 0.5"
-        source = "Butenschoen 1976"
-        flow = state.side_flow / (radius**2 * clearance * OMEGA)
+        state = chart(film(2 * radius * slenderness, 2 * radius, clearance, grooves(1, attitude, 0.5)), 0.5)
+        flow, error = state.side_flow / (radius**2 * clearance * OMEGA), state.side_flow_error / state.side_flow
+        row = partial(Row, f"plain bearing, B/D {slenderness:g}, eccentricity 0.5", "Butenschoen 1976", PRINTED)
         rows += [
-            Row(
-                name,
-                source,
-                PRINTED,
-                "Sommerfeld number",
-                row["sommerfeld_number"],
-                state.sommerfeld_number,
-                state.force_error,
-                0.01,
-            ),
-            Row(name, source, PRINTED, "attitude, deg", row["attitude_deg"], state.attitude_deg, math.nan, 5e-3),
-            Row(
-                name,
-                source,
-                PRINTED,
-                "side flow",
-                row["side_flow"],
-                flow,
-                state.side_flow_error / state.side_flow,
-                0.01,
-            ),
+            row("Sommerfeld number", number, state.sommerfeld_number, state.force_error, 0.01),
+            row("attitude, deg", attitude, state.attitude_deg, math.nan, 5e-3),
+            row("side flow", line["side_flow"], flow, error, 0.01),
         ]
     return rows
 
@@ -261,18 +207,7 @@ def lund_thomsen() -> list[Row]:
         state = under(row["s"], 0.1 * row["width_over_diameter"], 1e-4, grooves(2, 90, 20))
         name = f"two axial grooves, L/D {row['width_over_diameter']:g}, S {row['s']:g}"
         source = "Lund, Thomsen 1978"
-        rows.append(
-            Row(
-                name,
-                source,
-                PRINTED,
-                "eccentricity",
-                row["eccentricity"],
-                state.eccentricity,
-                state.place_error / state.eccentricity,
-                0.01,
-            )
-        )
+        rows.append(eccentricity(name, source, state, row["eccentricity"], 0.01))
         rows += of_table(name, source, state, 1e-4, row, 0.016)
     row = printed("lund-thomsen-lemon.csv")[0]
     state = under(row["s"], 0.1, 2e-4, grooves(2, 90, 20), "lobes = { count = 2, preload = 0.5 }")
@@ -283,7 +218,7 @@ def lund_thomsen() -> list[Row]:
 def nicholas() -> list[Row]:
     """Bearings without a dam: a rigid rotor on a film whose coefficients stay."""
     rows = []
-    for mil, eccentricity in ((1.8, 0.03), (2.0, 0.04)):
+    for mil, printed_eccentricity in ((1.8, 0.03), (2.0, 0.04)):
         clearance, load, speed = 25.4e-6 * mil, 66.278, 8000.0 / 60.0
         text = CASE.format(viscosity=52.4, width=25.4, diameter=25.4, clearance=1e6 * clearance,
                            supply=grooves(2, 90, 20), load=load)  # fmt: skip
@@ -295,20 +230,7 @@ def nicholas() -> list[Row]:
         whirl = np.linalg.det(k - still * np.eye(2)) / np.linalg.det(b) / (math.tau * speed) ** 2
         found = math.sqrt(still * clearance / load / whirl)
         name, source = f"bearing A of {mil:g} mil, 8000 rpm", "Nicholas et al. 1980, table 6"
-        printed_so = "Printed to one digit."
-        rows.append(
-            Row(
-                name,
-                source,
-                PRINTED,
-                "eccentricity",
-                eccentricity,
-                state.eccentricity,
-                state.place_error / state.eccentricity,
-                0.15,
-                printed_so,
-            )
-        )
+        rows.append(eccentricity(name, source, state, printed_eccentricity, 0.15, "Printed to one digit."))
         rows.append(Row(name, source, PRINTED, "threshold sqrt(C/g)", 2.1, found, state.error, 0.025))
     return rows
 
@@ -316,58 +238,26 @@ def nicholas() -> list[Row]:
 LOBES = {"preload 2/3": 2.0 / 3.0, "preload 1/2": 0.5}
 
 
-@cache
-def someya_lines() -> list[dict[str, str]]:
-    lines = (DATA / "someya.csv").read_text(encoding="utf-8").splitlines()
-    return list(csv.DictReader(line for line in lines if not line.startswith("#")))
-
-
 def someya() -> list[Row]:
     rows = []
-    for line in someya_lines():
+    for line in rows_of("someya.csv"):
         row = {key.lower(): float(value) for key, value in line.items() if key not in ("table", "page")}
         width = 0.05 if "L/D 0.5" in line["table"] else 0.1
         preload = next((each for part, each in LOBES.items() if part in line["table"]), 0.0)
         shell = f'lobes = {{ count = 2, preload = {preload!r}, position = "0 deg" }}' if preload else ""
         state = under(row["s"], width, 1e-4, grooves(2, 90, 10), shell, preload)
         name, source = f"{line['table']}, S {row['s']:g}", SOMEYA.format(line["page"])
-        rows.append(
-            Row(
-                name,
-                source,
-                PRINTED,
-                "eccentricity",
-                row["e"],
-                state.eccentricity,
-                state.place_error / state.eccentricity,
-                0.04 if preload else 0.01,
-                LOBED if preload else "",
-            )
-        )
-        rows.append(
-            Row(
-                name,
-                source,
-                PRINTED,
-                "attitude, deg",
-                row["phi"],
-                state.attitude_deg,
-                math.nan,
-                0.04,
-                BOOK if row["e"] < 0.3 and not preload else "",
-            )
-        )
+        bound, why = (0.04, LOBED) if preload else (0.01, "")
+        rows.append(eccentricity(name, source, state, row["e"], bound, why))
+        turned = BOOK if row["e"] < 0.3 and not preload else ""
+        rows.append(Row(name, source, PRINTED, "attitude, deg", row["phi"], state.attitude_deg, math.nan, 0.04, turned))
         rows += of_table(name, source, state, 1e-4, row, 0.1, LOBED if preload else BOOK)
         if preload:
             continue
-        value = float(dimensionless(state, 1e-4)[0][1, 0])
-        rows.append(
-            Row(name, source, PRINTED, KYX, row["kyx"], value, state.error, 0.55 if row["e"] < 0.3 else 0.3, BOOK)
-        )
+        value, bound = float(dimensionless(state, 1e-4)[0][1, 0]), 0.55 if row["e"] < 0.3 else 0.3
+        rows.append(Row(name, source, PRINTED, KYX, row["kyx"], value, state.error, bound, BOOK))
         if width == 0.05 and row["e"] == 0.2:
-            rows.append(
-                Row(name, "finite differences", PROGRAM, KYX, -3.07, value, state.error, 5e-3)
-            )
+            rows.append(Row(name, "finite differences", PROGRAM, KYX, -3.07, value, state.error, 5e-3))
     return rows
 
 

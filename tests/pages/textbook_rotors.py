@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -99,25 +100,24 @@ def jeffcott() -> list[Row]:
     sides = np.sqrt(np.roots([1.0 - 2.0 / height**2, 4.0 * ratio**2 - 2.0, 1.0]).real)
     factor = speed / abs(float(sides[1] - sides[0]))
     critical, error = speed * natural / TURN, peak.speed_uncertainty_Hz / peak.speed_Hz
-    name, source = "Laval rotor, damping ratio 0.05", "Jeffcott 1919; Genta 2005"
     assert peak.amplitude is not None
     assert peak.amplification_factor is not None
     assert peak.separation_margin is not None
-    rows = [
-        Row(name, source, CLOSED, "critical speed, Hz", critical, peak.speed_Hz, error, 1e-4),
-        Row(name, source, CLOSED, "amplitude, um", 1e6 * height * unbalance / mass, 1e6 * peak.amplitude, 1e-3, 1e-3),
-    ]
-    api, found = "API RP 684", peak.amplification_factor
-    rows.append(Row(name, api, CLOSED, "amplification factor", factor, found, 1e-3, 1e-3))
+    found = peak.amplification_factor
     margins = [17.0 * (1.0 - 1.0 / (each - 1.5)) for each in (factor, found)]
-    rows.append(Row(name, "API 617", CLOSED, "required margin, %", *margins, 1e-3, 1e-3))
-    actual = 1.0 - critical / low
-    rows.append(Row(name, "API 617", CLOSED, "margin to 12000 rpm", actual, peak.separation_margin, error, 1e-3))
     decrement = TURN * ratio / math.sqrt(1.0 - ratio**2)
-    rows.append(
-        Row(name, "API 617", CLOSED, "logarithmic decrement", decrement, peak.logarithmic_decrement, math.nan, 1e-6)
+    jeffcott, api_684, api_617 = (
+        partial(Row, "Laval rotor, damping ratio 0.05", source, CLOSED)
+        for source in ("Jeffcott 1919; Genta 2005", "API RP 684", "API 617")
     )
-    return rows
+    return [
+        jeffcott("critical speed, Hz", critical, peak.speed_Hz, error, 1e-4),
+        jeffcott("amplitude, um", 1e6 * height * unbalance / mass, 1e6 * peak.amplitude, 1e-3, 1e-3),
+        api_684("amplification factor", factor, found, 1e-3, 1e-3),
+        api_617("required margin, %", *margins, 1e-3, 1e-3),
+        api_617("margin to 12000 rpm", 1.0 - critical / low, peak.separation_margin, error, 1e-3),
+        api_617("logarithmic decrement", decrement, peak.logarithmic_decrement, math.nan, 1e-6),
+    ]
 
 
 def balance_grade() -> list[Row]:
@@ -128,19 +128,8 @@ def balance_grade() -> list[Row]:
     case = on_springs({"kind": "rigid", "mass": mass, "unbalance": unbalance}, 1e4, 0.0, 1000.0)
     motion = float(frbcli.response(case, [speed]).amplitude[0].max())
     share = 1.0 - 2e4 / mass / (TURN * speed) ** 2
-    name = "rigid rotor, G 2.5 at 900 Hz"
-    return [
-        Row(
-            name,
-            "ISO 21940-11",
-            CLOSED,
-            "whirl of the shaft, um",
-            1e6 * grade / (TURN * speed * share),
-            1e6 * motion,
-            math.nan,
-            1e-6,
-        )
-    ]
+    row = partial(Row, "rigid rotor, G 2.5 at 900 Hz", "ISO 21940-11", CLOSED)
+    return [row("whirl of the shaft, um", 1e6 * grade / (TURN * speed * share), 1e6 * motion, math.nan, 1e-6)]
 
 
 def internal_damping() -> list[Row]:
@@ -149,19 +138,8 @@ def internal_damping() -> list[Row]:
     found = stability(on_springs(rotor, 1e13, 0.0, 300.0)).threshold
     assert found is not None
     expected = math.sqrt(1e6 / 10.0) * (1.0 + 40.0 / 20.0) / TURN
-    name, source = "Laval rotor, internal damping, c_e/c_i = 2", "Kimball 1924; Genta 2005"
-    return [
-        Row(
-            name,
-            source,
-            CLOSED,
-            "threshold, Hz",
-            expected,
-            found.speed_Hz,
-            found.speed_uncertainty_Hz / found.speed_Hz,
-            1e-6,
-        )
-    ]
+    row = partial(Row, "Laval rotor, internal damping, c_e/c_i = 2", "Kimball 1924; Genta 2005", CLOSED)
+    return [row("threshold, Hz", expected, found.speed_Hz, found.speed_uncertainty_Hz / found.speed_Hz, 1e-6)]
 
 
 def orthotropic() -> list[Row]:
@@ -255,19 +233,9 @@ def timoshenko() -> list[Row]:
             rotary * line / shear, -(line + rotary * wave**2 + bending * line / shear * wave**2), bending * wave**4
         ])  # fmt: skip
         expected = math.sqrt(min(squares)) / TURN
+        name = "thick shaft, 80 mm by 400 mm, simply supported"
         near = nearest(found, expected)
-        rows.append(
-            Row(
-                "thick shaft, 80 mm by 400 mm, simply supported",
-                "Timoshenko 1921",
-                CLOSED,
-                f"mode {n}, Hz",
-                expected,
-                near,
-                math.nan,
-                1e-3,
-            )
-        )
+        rows.append(Row(name, "Timoshenko 1921", CLOSED, f"mode {n}, Hz", expected, near, math.nan, 1e-3))
     return rows
 
 
@@ -310,19 +278,9 @@ def disk_in_the_middle() -> list[Row]:
     part = {"length": length, "diameter": d, "density": 1.0}
     case = on_shaft([part], [wheel], [(0.0, 1e12), (length, 1e12)], 100.0)
     peak = frbcli.response(case).critical_speeds[0]
-    name, source = "disk in the middle of a massless shaft", "Timoshenko, Young 1955"
-    return [
-        Row(
-            name,
-            source,
-            CLOSED,
-            "critical speed, Hz",
-            math.sqrt(stiffness / mass) / TURN,
-            peak.speed_Hz,
-            reduction_error(case),
-            5e-4,
-        )
-    ]
+    row = partial(Row, "disk in the middle of a massless shaft", "Timoshenko, Young 1955", CLOSED)
+    natural = math.sqrt(stiffness / mass) / TURN
+    return [row("critical speed, Hz", natural, peak.speed_Hz, reduction_error(case), 5e-4)]
 
 
 def friswell() -> list[Row]:
@@ -340,24 +298,13 @@ def friswell() -> list[Row]:
          {0.0: (90.14, 90.14, 630.73, 630.73), 4000.0: (76.19, 103.91, 565.99)}),
     ]  # fmt: skip
     for example, case, figures in printed:
-        error = reduction_error(case)
+        error, name = reduction_error(case), "two disks" if len(case.disks) > 1 else "overhung disk"
+        row = partial(Row, name, FRISWELL.format(example), PRINTED)
         for rpm, expected in figures.items():
             found = whirls(case, max(rpm / 60.0, STILL))
             for n, value in enumerate(expected):
-                quantity = f"mode {n + 1}, {rpm:g} rpm, rad/s"
-                rows.append(
-                    Row(
-                        "two disks" if len(case.disks) > 1 else "overhung disk",
-                        FRISWELL.format(example),
-                        PRINTED,
-                        quantity,
-                        value,
-                        found[n],
-                        error,
-                        5e-4,
-                        COARSE if value > 600.0 else "",
-                    )
-                )
+                why = COARSE if value > 600.0 else ""
+                rows.append(row(f"mode {n + 1}, {rpm:g} rpm, rad/s", value, found[n], error, 5e-4, why))
     return rows
 
 
@@ -417,19 +364,10 @@ def ross_files() -> list[Row]:
         for n, value in ((1, 83.67), (2, 274.5))
     ]
     three = "Its three elements have this mode 0.5 % too fast; damping grows with the square."
-    name, error = "shaft with alpha 20 1/s and beta 0.1 ms", reduction_error(damped)
+    row = partial(Row, "shaft with alpha 20 1/s and beta 0.1 ms", "ROSS, three elements", PROGRAM)
+    error = reduction_error(damped)
     return rows + [
-        Row(
-            name,
-            "ROSS, three elements",
-            PROGRAM,
-            f"growth {n}, 1/s",
-            value,
-            slow[n - 1].real,
-            error,
-            bound,
-            why,
-        )
+        row(f"growth {n}, 1/s", value, slow[n - 1].real, error, bound, why)
         for n, value, bound, why in ((1, -23.2, 2.5e-3, ""), (2, -631.0, 0.01, three))
     ]
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from marches import march, start, without_films
+from marches import march, planned_system, start, without_films
 from scipy.linalg import expm
 
 import frbcli
@@ -25,7 +25,7 @@ from frbcli.rotor.loads import SpeedProfile, speed_profile
 from frbcli.runs.run import runup
 from frbcli.runs.start import state_at
 from frbcli.scene.machine.rotor import make_rotor
-from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.machine.system import System
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import Control
 
@@ -71,10 +71,6 @@ def two_rings(*more: str, ring: str) -> Case:
         for name, place in zip(("left", "right"), ENDS, strict=True)
     )
     return frbcli.load_case("jeffcott", [*SHAFT, f"bearing = [{bearings}]", *more])
-
-
-def system_of(case: Case) -> System:
-    return make_system(case, make_plan(case))
 
 
 def on_springs(polar: float = POLAR) -> LinearRotor:
@@ -162,7 +158,7 @@ def test_both_ends_turn_one_ring() -> None:
     """k_i (omega_R - omega_F) = k_o omega_F with the sums of both ends; each film has its own clearance here."""
     wide = INNER.replace("20 um", "30 um")
     case = cartridge("rotor.gravity=0", inner=f"[{INNER}, {wide}]")
-    system = system_of(case)
+    system = planned_system(case)
     left, outer, right, other = system.drags
     ratio = (left + right) / (left + right + outer + other)
     assert concentric_ratios(case) == pytest.approx({"left": ratio, "right": ratio})
@@ -187,7 +183,7 @@ def test_both_ends_are_as_warm_as_two_rings() -> None:
 def test_small_motions_decay_and_grow_as_the_eigenvalues_say() -> None:
     """Each motion of the linearised machine that the gyroscopic moments of the ring change, beside a run from it."""
     case = cartridge("rotor.gravity=0", ring=RING.replace('inertia = "0.7', 'inertia = "4.5'))
-    system, (point,) = system_of(case), stability_points(case, [SPEED])[1]
+    system, (point,) = planned_system(case), stability_points(case, [SPEED])[1]
     rest = resting_position(system, OMEGA)
     rotor, still = (without_spins(system.rotor, share * rest.ring_speeds) for share in (1.0, 0.0))
     films = [-np.array([getattr(film, name) for film in rest.films]) for name in ("by_displacement", "by_velocity")]

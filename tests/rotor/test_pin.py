@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from marches import march, start
+from marches import march, planned_system, start
 
 import frbcli
 from frbcli.case.schema import Case
@@ -16,8 +16,7 @@ from frbcli.elements.pin import pin_torque
 from frbcli.errors import FrbError
 from frbcli.plot.motion import quantity_figure
 from frbcli.rotor.loads import speed_profile
-from frbcli.scene.machine.system import System, make_system
-from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.machine.system import System
 from frbcli.solve.ring_spin import DAMPING, PLAY, STIFFNESS, pinned
 from frbcli.solve.state import Control
 
@@ -35,10 +34,6 @@ def ringed(*settings: str) -> Case:
     return frbcli.load_case("floating-ring", [*CONCENTRIC, *settings])
 
 
-def system_of(case: Case) -> System:
-    return make_system(case, make_plan(case))
-
-
 def turned(system: System, duration: float, speed: float = 0.0, output: float = 1e-4) -> tuple[np.ndarray, ...]:
     """Times, angles and speeds of the ring of a machine at OMEGA that begins with a speed in rad/s."""
     v = np.zeros(system.rotor.size)
@@ -51,7 +46,7 @@ def turned(system: System, duration: float, speed: float = 0.0, output: float = 
 def test_a_ring_turns_through_its_play_and_rests_where_the_spring_balances_its_films() -> None:
     """Concentric films pull with k_i (omega - w) - k_o w, k = 2 pi eta R^3 B / C: the ring turns as without a pin until
     it has turned by the play, 0.1 rad, and comes to rest at k_i omega / K behind it."""
-    system = system_of(ringed(pin()))
+    system = planned_system(ringed(pin()))
     k_i, k_o = 2.0 * math.pi * np.array(system.drags)
     rate, last = (k_i + k_o) / INERTIA, k_i * OMEGA / (k_i + k_o)
     t, angle, speed = turned(system, 0.06)
@@ -72,7 +67,7 @@ def test_a_ring_turns_through_its_play_and_rests_where_the_spring_balances_its_f
 def test_a_pin_gives_back_what_its_damper_leaves() -> None:
     """Without drag a ring bounces to and fro: as fast as it came without a damper, and with one by the factor
     exp(-b t), b = C / (2 I), tan(w t) = -2 b w / (w^2 - b^2), at which its acceleration and so the force is zero."""
-    system, speed = system_of(ringed(pin(damping=0.0))), 25.0
+    system, speed = planned_system(ringed(pin(damping=0.0))), 25.0
     still = replace(system, drags=(0.0, 0.0), torque="couette")
     row = system.pins[0]
     own = math.sqrt(row[STIFFNESS] / INERTIA)
@@ -96,10 +91,10 @@ def test_a_pin_gives_back_what_its_damper_leaves() -> None:
 def test_a_stiff_pin_without_play_is_a_blocked_ring() -> None:
     """They differ by 1 / stiffness, and its torque is what the films pull with."""
     loaded = "rotor.gravity=9.81", "rotor.unbalance=50 g*mm"
-    held = march_of(system_of(ringed('bearing.ring.spin="blocked"', *loaded)))
+    held = march_of(planned_system(ringed('bearing.ring.spin="blocked"', *loaded)))
     away = []
     for stiffness in (1e7, 1e9):
-        q = march_of(system_of(ringed(pin(0.0, stiffness, 0.0), *loaded)))
+        q = march_of(planned_system(ringed(pin(0.0, stiffness, 0.0), *loaded)))
         away.append(np.abs(q[:, :-1] - held).max() / np.abs(held).max())
     assert away[0] > 1e-7
     assert away[1] < 0.03 * away[0]
@@ -139,7 +134,7 @@ def test_a_run_has_angle_and_torque_of_its_pin(tmp_path: Path) -> None:
     run = frbcli.runup(case, tmp_path / "run.h5")
     assert run.signals["pin_torque_N_m"].unit == "N m"
     assert run["pin_angle_rad"].max() > PLAYS / RADIUS
-    expected = pin_torque(system_of(case).pins[0], run["pin_angle_rad"], 2.0 * math.pi * run["ring_speed_Hz"])
+    expected = pin_torque(planned_system(case).pins[0], run["pin_angle_rad"], 2.0 * math.pi * run["ring_speed_Hz"])
     np.testing.assert_allclose(run["pin_torque_N_m"], expected, atol=1e-9)
     (touch,) = (event for event in run.events if event["kind"] == "touch")
     assert touch["point"] == "ring"

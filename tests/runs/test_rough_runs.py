@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from films import ROUGH
+from marches import planned_system
 from resumed import assert_resumable
 from scipy.integrate import quad
 from scipy.interpolate import CubicSpline
@@ -23,10 +24,10 @@ from frbcli.linear.sheets.bearing import bearing_sheet
 from frbcli.linear.stability import stability
 from frbcli.results.store import Run
 from frbcli.runs.run import rundown, runup
-from frbcli.scene.machine.system import make_system, rough_surfaces
-from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.machine.system import rough_surfaces
 
 WEAR = "contact.wear=1e-7", "contact.hardness=2 GPa"
+HEAVY = "rotor.gravity=40 m/s^2"  # else a ring without feed holes slips
 STARTS = ("start.position=resting", "rotor.unbalance=0 g*mm", 'output.signals=["torque","power"]')
 
 
@@ -182,7 +183,7 @@ def test_a_run_with_flow_factors_stays_where_its_film_rests_on_fewer_summits(tmp
     (sheet,) = bearing_sheet(case, [0.3]).points
     assert sheet.mixed is not None
     run = runup(case, tmp_path / "run.h5")
-    system = make_system(case, make_plan(case))
+    system = planned_system(case)
     (place,) = resting_position(system, omega).journals
     film, _ = system.films.power_and_flow(0, place, omega, omega, 0.0)
     np.testing.assert_allclose(run["eccentricity"], np.hypot(*place) / 35e-6, rtol=1e-9)
@@ -224,15 +225,22 @@ def test_a_ring_sticks_to_its_shell_until_its_rotor_has_lifted_off(tmp_path: Pat
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize("speed", [4.0])
-def test_a_ring_that_friction_holds_rests_as_in_a_run(speed: float, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "films",
+    [
+        ("film.theory=short", 'bearing.inner.supply={kind="circumferential-groove", pressure="2 bar"}', HEAVY),
+        pytest.param((), marks=pytest.mark.nightly),  # compiles a time loop of its own for a minute
+    ],
+    ids=["grooves", "feed holes"],
+)
+def test_a_ring_that_friction_holds_rests_as_in_a_run(films: tuple[str, ...], tmp_path: Path) -> None:
     """It sticks to its shell and creeps there, as Coulomb's law near rest has it. With it creep its feed holes, by
     2e-4 rad in the run: the rest, which has them at its angle 0, is that of the beginning to 1e-6, and of the end to
     what so small an angle changes."""
-    course = (f"speed.from={speed} Hz", f"speed.to={speed} Hz", "speed.duration=0.2 s")
-    case = load_case("floating-ring", [*ROUGH, *STARTS, "film.cavitation=half-sommerfeld", *course])
-    system = make_system(case, make_plan(case))
-    rest = resting_position(system, 2.0 * np.pi * speed)
+    course = ("speed.from=4.0 Hz", "speed.to=4.0 Hz", "speed.duration=0.2 s")
+    case = load_case("floating-ring", [*ROUGH, *STARTS, "film.cavitation=half-sommerfeld", *films, *course])
+    system = planned_system(case)
+    rest = resting_position(system, 2.0 * np.pi * 4.0)
     run = runup(case, tmp_path / "run.h5")
     eccentricities = np.hypot(*rest.journals.T) / system.clearances
     assert run["asperity_share_outer"][-1] > 0.0
@@ -241,15 +249,15 @@ def test_a_ring_that_friction_holds_rests_as_in_a_run(speed: float, tmp_path: Pa
     ring = run["ring_speed_Hz"] / (rest.ring_speeds[0] / (2.0 * np.pi)) - 1.0
     assert np.abs(ring[run["time_s"] < 0.02]).max() < 1e-6
     assert np.abs(ring).max() < 1e-4
-    films = resting_position(replace(system, asperities=None), 60.0 * np.pi)
-    assert rest.ring_speeds[0] / speed < films.ring_speeds[0] / 30.0
-    assert rest.ring_speeds[0] < 2.0 * np.pi * speed * 2e-4
+    smooth = resting_position(replace(system, asperities=None), 60.0 * np.pi)
+    assert rest.ring_speeds[0] / 4.0 < smooth.ring_speeds[0] / 30.0
+    assert rest.ring_speeds[0] < 2.0 * np.pi * 4.0 * 2e-4
 
 
 def test_a_ring_whose_summits_do_not_touch_rests_as_between_smooth_surfaces() -> None:
     """Bit for bit."""
     case = load_case("floating-ring", [*ROUGH, "film.cavitation=half-sommerfeld"])
-    system, omega = make_system(case, make_plan(case)), 2.0 * np.pi * 30.0
+    system, omega = planned_system(case), 2.0 * np.pi * 30.0
     rough, smooth = (resting_position(each, omega) for each in (system, replace(system, asperities=None)))
     np.testing.assert_array_equal(rough.ring_speeds, smooth.ring_speeds)
     np.testing.assert_allclose(rough.displacements, smooth.displacements, rtol=1e-9)

@@ -61,13 +61,12 @@ def interrupted(tmp_path: Path) -> Path:
 
 
 # --- run files ---
-@pytest.mark.parametrize("again", [runup])
-def test_an_interrupted_run_is_not_replaced_unasked(again: Any, interrupted: Path) -> None:
+def test_an_interrupted_run_is_not_replaced_unasked(interrupted: Path) -> None:
     before = interrupted.read_bytes()
     with pytest.raises(InputError, match=r"--resume.*--force"):
-        again(load_case("jeffcott", SETTINGS), interrupted)
+        runup(load_case("jeffcott", SETTINGS), interrupted)
     assert interrupted.read_bytes() == before
-    assert again(load_case("jeffcott", SETTINGS), interrupted, force=True).status == "finished"
+    assert runup(load_case("jeffcott", SETTINGS), interrupted, force=True).status == "finished"
 
 
 def test_command_names_the_ways_out_of_an_interrupted_run(

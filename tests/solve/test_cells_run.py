@@ -1,4 +1,4 @@
-"""Run-ups on films with cells: oil is kept, nothing depends on pauses, the limits are those of films without cells."""
+"""Run-ups on films with cells: oil and gas are kept, pauses change nothing, limits are those of films without cells."""
 
 from __future__ import annotations
 
@@ -13,15 +13,18 @@ import frbcli
 from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
-from frbcli.film.cells.data import VolumeFilms
+from frbcli.film.cells.balance.ends import GAS_IN, GAS_OUT, GAS_RELEASED
+from frbcli.film.cells.data import GAS, PASSED, VolumeFilms
+from frbcli.film.cells.linearised import linear_film, stiffness_at
+from frbcli.film.kinds.tilted import TiltedFilms
 from frbcli.results.store import read_run
 from frbcli.runs.films import oil_defect
-from frbcli.runs.march import Progress
+from frbcli.runs.march import Progress, control_of
 from frbcli.runs.start import first_state, rotor_data
-from frbcli.scene.machine.system import settled_share
+from frbcli.scene.machine.system import System, settled_share
 from frbcli.scene.planning.cell_choice import run_up_profile
 from frbcli.scene.planning.plan import make_plan
-from frbcli.solve.state import FINISHED, METHODS, REJECTED, SOLVES, STEP, STEPS, State, make_output
+from frbcli.solve.state import FINISHED, METHODS, REJECTED, RUNNING, SOLVES, STEP, STEPS, State, make_output
 from frbcli.solve.time_loop import advance
 
 SHORT = ["speed.duration=0.1s", "speed.to=30Hz", "speed.from=20Hz", "output.step=0.5ms", "accuracy.mesh=[5,32]"]
@@ -185,11 +188,10 @@ def test_every_model_runs_and_records_its_oil(cavitation: str, tmp_path: Path) -
     assert (run_.error["oil_balance_relative"] is not None) == remembers
 
 
-@pytest.mark.parametrize("cavitation", ["reynolds"])
-def test_kinked_models_settle_where_bores_turn_fast(cavitation: str, tmp_path: Path) -> None:
+def test_kinked_models_settle_where_bores_turn_fast(tmp_path: Path) -> None:
     """Plain Newton steps go to and fro here, however short the time step."""
     settings = ["speed.from=600Hz", "speed.to=606Hz", "speed.duration=0.01s", "film.penalty.pressure=absolute"]
-    case = load_case("floating-ring", [f"film.cavitation={cavitation}", *settings, "accuracy.mesh=[6,48]"])
+    case = load_case("floating-ring", ["film.cavitation=reynolds", *settings, "accuracy.mesh=[6,48]"])
     assert frbcli.runup(case, tmp_path / "run.h5").status == "finished"
 
 
@@ -205,9 +207,8 @@ def test_steepness_follows_the_whirl() -> None:
     assert 0.0 < moved < whole
 
 
-@pytest.mark.parametrize("cavitation", ["two-phase"])
-def test_a_grid_that_turns_with_half_the_speed_finds_the_same_path(cavitation: str) -> None:
-    settings = [f"film.cavitation={cavitation}", "film.solution=cells", "speed.duration=0.03s"]
+def test_a_grid_that_turns_with_half_the_speed_finds_the_same_path() -> None:
+    settings = ["film.cavitation=two-phase", "film.solution=cells", "speed.duration=0.03s"]
     settings.append("bearing.supply.pressure=1.5bar")
 
     def apart(around: int) -> float:
@@ -254,3 +255,96 @@ def test_what_an_iteration_leaves_of_a_curved_law_does_not_add_up(law: str, tmp_
     assert long < 1e-5
     assert long < 2.0 * max(short, 1e-6)
     assert defect("accuracy.tolerance=1e-5", "speed.duration=8 ms") < 1e-7
+
+
+def bubbly(release: str, absorption: str) -> list[str]:
+    times = [f"film.bubbly.release_time={release}", f"film.bubbly.absorption_time={absorption}"]
+    return ["film.cavitation=bubbly", *times]
+
+
+SETTINGS = ("start.position=resting", "bearing.supply.pressure=2bar", "speed.duration=0.04s")
+SLOW = bubbly("1 ms", "1 s")
+
+
+def fed(*settings: str, name: str = "jeffcott") -> Case:
+    return case_of(name, *SETTINGS, *settings)
+
+
+TILTED = 'bearing.misalignment=["0.3 mrad", "-0.2 mrad"]', "film.theory=finite", "speed.duration=0.02s"
+
+
+@pytest.mark.parametrize("shell", [(), pytest.param(TILTED, marks=pytest.mark.nightly)], ids=["even", "tilted"])
+def test_all_gas_is_accounted_for_in_every_step(shell: tuple[str, ...]) -> None:
+    """Its content changes by what comes in, leaves the solution and leaves the film, to round-off; in each of both
+    lands of one whose gap is not even."""
+    case = fed(*SLOW, *shell)
+    plan, system = planned(case)
+    films, profile = system.films, run_up_profile(case)
+    film = films.own[0].lands[0].film if isinstance(films, TiltedFilms) else films.with_fields[0]
+    area = np.where(film.grid.fixed, 0.0, film.grid.area)
+    state = first_state(case.start, system, profile)
+    content, passed = [float((area * state.wet[GAS, 0]).sum())], [np.zeros(3)]
+    tableau, control, rotor = METHODS[plan.method].tableau, control_of(case, plan), rotor_data(system, profile)
+    status = RUNNING
+    while status == RUNNING:
+        output = make_output(400, system.rotor.size, 1)
+        status, _ = advance(rotor, system.films.loop, tableau, control, state, 1, output)
+        content.append(float((area * state.wet[GAS, 0]).sum()))
+        passed.append(state.flows[PASSED, 0, [GAS_IN, GAS_OUT, GAS_RELEASED]].copy())
+    assert status == FINISHED
+    came, left, freed = np.diff(np.array(passed), axis=0).T
+    np.testing.assert_allclose(np.diff(content), came - left + freed, rtol=0.0, atol=1e-10 * max(content))
+    assert passed[-1][1] > 0.2 * content[-1]
+    assert state.wet[GAS, 0].min() >= -1e-5 * state.wet[GAS, 0].max()  # what iterations leave is carried on
+    defect = oil_defect(system, state, profile.angle(profile.end))
+    assert defect is not None
+    assert defect < 1e-4
+
+
+def test_pauses_do_not_change_a_run_with_gas() -> None:
+    case = fed(*SLOW, "speed.duration=0.01s")
+    plan, system = planned(case)
+    whole, end = run_up(case, plan, system)
+    pieces, paused = run_up(case, plan, system, budget=3)
+    np.testing.assert_array_equal(pieces, whole)
+    np.testing.assert_array_equal(paused.wet, end.wet)
+
+
+def eigenvalue(system: System, place: Array, omega: float, near: complex) -> complex:
+    """s of det(m s^2 + K(s)) = 0, by secants; K: of the film linearised at its place, m: the mass on one film."""
+    film, mass = system.films.with_fields[0], float(system.rotor.mass[0, 0]) / float(system.rotor.multiplicity[0])
+    linear = linear_film(film, place, omega)
+
+    def determinant(s: complex) -> complex:
+        return complex(np.linalg.det(mass * s * s * np.eye(2) + stiffness_at(linear, s)))
+
+    before, s = 0.99 * near, near
+    low, high = determinant(before), determinant(s)
+    for _ in range(20):
+        before, s = s, s - high * (s - before) / (high - low)
+        low, high = high, determinant(s)
+        if abs(s - before) < 1e-6 * abs(s):
+            break
+    return s
+
+
+def test_a_small_whirl_grows_as_the_linearised_film_says() -> None:
+    """The difference of two runs that begin apart by 1e-3 of the clearance, after its other motions have died out.
+
+    On 64 cells around the linearised film is 3.4e-3 off, on 96 1.1e-3, on 128 6e-4. A run with Peeken's model is
+    5e-3 off."""
+    speed = ["speed.from=100Hz", "speed.to=100Hz", "rotor.unbalance=0 g*mm", "speed.duration=0.08s"]
+    case = fed(*SLOW, *speed, "accuracy.mesh=[5,96]", name="rigid")
+    plan, system = planned(case, tolerance=1e-6)
+    begun = first_state(case.start, system, run_up_profile(case))
+    pushed = first_state(case.start, system, run_up_profile(case))
+    pushed.v[0] += 0.3 * system.clearances[0]
+    courses = [run_up(case, plan, system, state)[0][:, :2] for state in (pushed, begun)]
+    apart = (courses[0] - courses[1])[60:]
+    lag = 8
+    map_, *_ = np.linalg.lstsq(apart[:-lag], apart[lag:], rcond=None)
+    found = np.log(np.linalg.eigvals(map_).astype(complex)) / (lag * 0.5e-3)
+    seen = complex(found[np.argmax(found.imag)])
+    place = system.rotor.journals[0] @ first_state(case.start, system, run_up_profile(case)).q
+    expected = eigenvalue(system, place, 2.0 * np.pi * 100.0, seen)
+    assert abs(seen - expected) < 2.5e-3 * abs(expected)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from marches import planned_system
 
 from frbcli.arrays import Array
 from frbcli.case.reading.listing import values
@@ -24,7 +25,7 @@ from frbcli.linear.stability import stability
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
 from frbcli.scene.films import centrifugal_pressures
-from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.machine.system import System
 from frbcli.scene.planning.plan import make_plan
 from frbcli.studies.compare import compare
 
@@ -44,10 +45,6 @@ def constant(speed_Hz: float, duration_s: float) -> tuple[str, ...]:
     return (f"speed.from={speed_Hz} Hz", f"speed.to={speed_Hz} Hz", f"speed.duration={duration_s} s")
 
 
-def system_of(case: Case) -> System:
-    return make_system(case, make_plan(case))
-
-
 def finished(case: Case, folder: Path, name: str = "run") -> Run:
     run = runup(case, folder / f"{name}.h5")
     assert run.status == "finished"
@@ -60,7 +57,7 @@ def finished(case: Case, folder: Path, name: str = "run") -> Run:
 def test_a_concentric_ring_spins_up_as_its_torques_say(tmp_path: Path) -> None:
     """theta omega_F' = k_i (omega_R - omega_F) - k_o omega_F, k = 2 pi eta R^3 B / C, less the area of the bores."""
     case = ringed(*BORES, *WEIGHTLESS, *constant(100.0, 0.15))
-    run, system = finished(case, tmp_path), system_of(case)
+    run, system = finished(case, tmp_path), planned_system(case)
     k_i, k_o = 2 * math.pi * np.array(system.drags) * system.films.sheared
     assert max(run["eccentricity_inner"].max(), run["eccentricity_outer"].max()) < 1e-6
     ratio = k_i / (k_i + k_o) * (1.0 - np.exp(-run["time_s"] * (k_i + k_o) / 20e-6))
@@ -77,7 +74,7 @@ def test_concentric_ratio_in_closed_form() -> None:
 
 def test_holes_are_not_sheared() -> None:
     """Six bores of 2.5 mm in a bearing of 20 mm x 25 mm, and a groove of no width."""
-    inner, outer = system_of(ringed("film.cavitation=half-sommerfeld", "accuracy.mesh=[40,160]")).films.sheared
+    inner, outer = planned_system(ringed("film.cavitation=half-sommerfeld", "accuracy.mesh=[40,160]")).films.sheared
     assert inner == pytest.approx(1.0 - 6 * math.pi / 4 * 2.5**2 / (math.pi * 20.0 * 25.0), abs=1e-6)
     assert outer == pytest.approx(1.0)
 
@@ -85,7 +82,7 @@ def test_holes_are_not_sheared() -> None:
 def test_a_resting_rotor_and_its_ring_stay_as_they_are(tmp_path: Path) -> None:
     """At 60 Hz, below the threshold of whirl."""
     case = ringed(*GROOVES, "rotor.unbalance=0", "start.position=resting", *constant(60.0, 0.1))
-    run, system = finished(case, tmp_path), system_of(case)
+    run, system = finished(case, tmp_path), planned_system(case)
     omega = 2 * math.pi * 60.0
     rest = resting_position(system, omega)
     np.testing.assert_allclose(run["ring_speed_Hz"], rest.ring_speeds[0] / (2 * math.pi), rtol=2e-3)
@@ -120,7 +117,7 @@ def shaken(tmp_path_factory: pytest.TempPathFactory) -> tuple[Run, System]:
     heavy = ("bearing.ring.mass=2 kg", "rotor.unbalance=300 g*mm", "rotor.shaft_damping=50 N*s/m")
     exact = ("start.position=resting", "accuracy.tolerance=1e-6")
     case = ringed(*GROOVES, *heavy, *exact, "speed.from=80 Hz", "speed.to=96 Hz", "speed.duration=0.04 s")
-    return finished(case, tmp_path_factory.mktemp("shaken")), system_of(case)
+    return finished(case, tmp_path_factory.mktemp("shaken")), planned_system(case)
 
 
 def _derivative(values: Array) -> Array:
@@ -238,7 +235,7 @@ def test_channels_throw_oil_outwards_unless_told_not_to() -> None:
     """Half of rho / 2 (R_o^2 - R_i^2) omega_F^2 is missing at the inner end of a channel, (4.27) to (4.29)."""
     centrifugal, level = (ringed("film.cavitation=half-sommerfeld", f"bearing.centrifugal_pressure={word}")
                      for word in ("true", "false"))  # fmt: skip
-    system = system_of(centrifugal)
+    system = planned_system(centrifugal)
     sections = [film.section for film in system.films.with_fields]
     inner, outer = centrifugal_pressures(centrifugal, sections)
     assert inner * sections[0].pressure_scale == pytest.approx(830 / 4 * (20e-3**2 - 12.5e-3**2))

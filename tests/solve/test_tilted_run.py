@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from marches import SPEED, WIDTH, flat_films, rigid_shaft
+from marches import SPEED, WIDTH, Result, flat_films, march, planned_system, rigid_shaft, start
 
 import frbcli
 from frbcli.case.reading.load import load_case
@@ -16,20 +16,18 @@ from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import resting_position
 from frbcli.linear.stability import stability_points
 from frbcli.rotor.assembly import PLANE
-from frbcli.rotor.loads import SpeedProfile, speed_profile
+from frbcli.rotor.loads import speed_profile
 from frbcli.runs.films import tilt_signals
-from frbcli.runs.start import rotor_data, state_at
 from frbcli.scene.forms.tilted import TiltedForm
 from frbcli.scene.machine.rotor import make_rotor
-from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.machine.system import System
 from frbcli.scene.planning.cell_choice import worst_film
 from frbcli.scene.planning.plan import make_plan
-from frbcli.solve.state import METHODS, RUNNING, SOLVES, STEPS, Control, make_output
-from frbcli.solve.time_loop import advance
+from frbcli.solve.state import SOLVES, STEPS, Control
 from frbcli.studies.accuracy import ladder, planned_rung
 
 MESH = "accuracy.mesh=[4, 24]"  # 24 x 8 cells over the whole width
-CONTROL = Control(1e-6, 24.0, 1e-3, 1e-4, 0.9999, 0.0)
+CONTROL, FINE = Control(1e-6, 24.0, 1e-3, 1e-4, 0.9999, 0.0), Control(1e-9, 60.0, 1e-3, 1e-4, 0.9999, 0.0)
 SUPPLIES = {
     "none": (),
     "groove": tuple(
@@ -48,27 +46,12 @@ Array = np.ndarray
 
 def tilted(*more: str) -> tuple[Case, System]:
     case = rigid_shaft("film.tilt=follows", MESH, *more)
-    return case, make_system(case, make_plan(case))
+    return case, planned_system(case)
 
 
-def steady(duration: float) -> SpeedProfile:
-    return speed_profile((0.0, duration), (OMEGA, OMEGA))
-
-
-def run(
-    system: System, duration: float, q: Array, v: Array | None = None, control: Control = CONTROL
-) -> tuple[Array, Array, Array]:
-    """Displacements and velocities (k, n) at the output times, and the numbers of the loop."""
-    profile = steady(duration)
-    state = state_at(system, profile, q, np.zeros_like(q) if v is None else v)
-    output = make_output(int(duration / control.output_step) + 10, system.rotor.size, len(system.names))
-    data, written, status = rotor_data(system, profile), 0, RUNNING
-    while status == RUNNING:
-        status, fresh = advance(
-            data, system.films.loop, METHODS["esdirk3"].tableau, control, state, 10**9, output.after(written)
-        )
-        written += fresh
-    return output.q[:written], output.v[:written], state.numbers
+def run(system: System, duration: float, q: Array, limits: Control = CONTROL) -> Result:
+    profile = speed_profile((0.0, duration), (OMEGA, OMEGA))
+    return march(system, profile, limits, start(system, profile, q), "esdirk3")
 
 
 def in_plane(case: Case, system: System) -> System:
@@ -93,26 +76,24 @@ def test_translation_is_as_without_tilt(law: str, supply: str) -> None:
     # Beside the centre: there a film stands on the kink of its law, and the first correction is a matter of round-off.
     aside = np.linalg.pinv(system.rotor.journals[:, :2].reshape(4, -1)) @ np.tile([0.1, -0.3], 2) * system.clearances[0]
     duration = 1.5e-3 if law in ("elrod", "bubbly") else 10e-3  # fronts that cross cells amplify round-off
-    control = CONTROL
+    limits = CONTROL
     if supply in TURNING:
-        duration, control = 3e-4, CONTROL._replace(tolerance=1e-9)
-    found, numbers = run(system, duration, aside, control=control)[::2]
-    expected, flat = run(in_plane(case, system), duration, aside, control=control)[::2]
-    journals = (make_rotor(case, PLANE).journals @ each.T / system.clearances[0] for each in (found, expected))
+        duration, limits = 3e-4, CONTROL._replace(tolerance=1e-9)
+    found, flat = (run(each, duration, aside, limits) for each in (system, in_plane(case, system)))
+    journals = (make_rotor(case, PLANE).journals @ each.q.T / system.clearances[0] for each in (found, flat))
     one, other = journals
     assert np.abs(other).max() > 0.05
     assert np.abs(one - other).max() < 1e-9
-    assert np.abs(system.rotor.journals[:, 2:] @ found.T).max() < 1e-9 * system.clearances[0] / WIDTH
-    assert numbers[STEPS] == flat[STEPS]
-    assert numbers[SOLVES] == flat[SOLVES]
+    assert np.abs(system.rotor.journals[:, 2:] @ found.q.T).max() < 1e-9 * system.clearances[0] / WIDTH
+    for number in (STEPS, SOLVES):
+        assert found.numbers[number] == flat.numbers[number]
     assert any(system.remembering) == (law in ("elrod", "bubbly"))
 
 
-@pytest.mark.parametrize("law", ["sommerfeld"])
-def test_small_motions_grow_as_the_eigenvalues_say(law: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_small_motions_grow_as_the_eigenvalues_say(monkeypatch: pytest.MonkeyPatch) -> None:
     """The conical motion of a run about its rest on the same cells, beside that of the linearised machine."""
     monkeypatch.setattr(TiltedForm, "static_cells", ((24, 8), (16, 6)))
-    case, system = tilted(f"film.cavitation={law}", "disk.0.unbalance=0 g*mm")
+    case, system = tilted("film.cavitation=sommerfeld", "disk.0.unbalance=0 g*mm")
     point = stability_points(case, [SPEED])[1][0]
     rest = resting_position(system, OMEGA)
     q = rest.displacements.copy()
@@ -120,7 +101,7 @@ def test_small_motions_grow_as_the_eigenvalues_say(law: str, monkeypatch: pytest
     moved = system.rotor.journals @ tilts
     assert np.abs(moved[:, 2] - 1.0).max() < 1.0
     q += 1e-4 * system.clearances[0] / WIDTH * tilts
-    found, _, _ = run(system, 30e-3, q, None, Control(1e-9, 60.0, 1e-3, 1e-4, 0.9999, 0.0))
+    found = run(system, 30e-3, q, FINE).q
     tilt = (system.rotor.journals[0, 2:] @ (found - rest.displacements).T)[:, 50:]
     signal = tilt[0] + 1j * tilt[1]
     fitted = slowest(signal, 1e-4)
@@ -133,7 +114,7 @@ def test_shells_out_of_line_hold_the_journals_where_they_rest() -> None:
     tilts = (f'bearing.{side}.misalignment=["{tilt} rad", "5e-4 rad"]' for side, tilt in ((0, 1e-3), (1, -6e-4)))
     _, system = tilted("film.cavitation=half-sommerfeld", "disk.0.unbalance=0 g*mm", *tilts)
     rest = resting_position(system, OMEGA)
-    found, _, _ = run(system, 5e-3, rest.displacements)
+    found = run(system, 5e-3, rest.displacements).q
     assert np.abs(rest.journals[:, 2:]).min() > 0.02 * system.clearances[0] / WIDTH
     moved = system.films.seen(system.rotor.journals) @ (found - rest.displacements).T
     assert np.abs(moved).max() < 1e-5 * system.clearances[0]
@@ -150,21 +131,20 @@ def inclined(kind: str, side: float, *more: str) -> System:
     """A rotor that moves in its plane in a shell that is not in line, inclined to the one or the other side."""
     shell = f'bearing.misalignment=["{side * 0.5} mrad", "{side * -0.3} mrad"]'
     case = load_case(kind, ["film.theory=finite", "film.cavitation=half-sommerfeld", MESH, shell, *more])
-    return make_system(case, make_plan(case))
+    return planned_system(case)
 
 
-@pytest.mark.parametrize("kind", ["rigid"])
-def test_a_rotor_that_does_not_tilt_stays_at_rest_in_a_shell_out_of_line(kind: str) -> None:
+def test_a_rotor_that_does_not_tilt_stays_at_rest_in_a_shell_out_of_line() -> None:
     """Both of its films carry it, and no moment turns it. A shell inclined the other way is the mirror image, in which
     the rotor moves alike."""
-    system, mirrored = (inclined(kind, side, "rotor.unbalance=0") for side in (1.0, -1.0))
+    system, mirrored = (inclined("rigid", side, "rotor.unbalance=0") for side in (1.0, -1.0))
     rest = resting_position(system, OMEGA)
-    found, _, _ = run(system, 5e-3, rest.displacements)
+    found = run(system, 5e-3, rest.displacements).q
     clearance = system.clearances[0]
     assert np.abs(system.films.seen(system.rotor.journals) @ (found - rest.displacements).T).max() < 1e-5 * clearance
     assert 2.0 * rest.films[0].force[1] == pytest.approx(-system.rotor.static_load.sum(), rel=1e-6)
     assert np.abs(rest.films[0].force[2:]).max() > 0.0
-    flat = resting_position(inclined(kind, 1e-6), OMEGA)
+    flat = resting_position(inclined("rigid", 1e-6), OMEGA)
     assert np.abs(rest.journals[0, :2] - flat.journals[0, :2]).max() > 1e-3 * clearance
     other = resting_position(mirrored, OMEGA)
     assert other.journals[0, :2] == pytest.approx(rest.journals[0, :2], abs=1e-7 * clearance)
@@ -176,11 +156,11 @@ def test_small_motions_in_a_shell_out_of_line_grow_as_the_eigenvalues_say(monkey
     monkeypatch.setattr(TiltedForm, "static_cells", ((24, 8), (16, 6)))
     case = load_case("jeffcott", ["film.theory=finite", "film.cavitation=sommerfeld", MESH, "rotor.unbalance=0 g*mm",
                                   'bearing.misalignment=["0.8 mrad", "0.3 mrad"]'])  # fmt: skip
-    system = make_system(case, make_plan(case))
+    system = planned_system(case)
     point = stability_points(case, [SPEED])[1][0]
     rest, journal = resting_position(system, OMEGA).displacements, system.rotor.journals[0, :2]
     aside = 1e-4 * system.clearances[0] * np.linalg.pinv(journal) @ np.array([1.0, 0.0])
-    found, _, _ = run(system, 40e-3, rest + aside, None, Control(1e-9, 60.0, 1e-3, 1e-4, 0.9999, 0.0))
+    found = run(system, 40e-3, rest + aside, FINE).q
     x, y = (journal @ (found - rest).T)[:, 100:]
     fitted = slowest(x + 1j * y, 1e-4, 16)
     nearest = point.eigenvalues[np.argmin(np.abs(point.eigenvalues - fitted))]

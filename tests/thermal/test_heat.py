@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
-from paths import DATA
+from printed_sheets import printed
 
 from frbcli.bearing_tests.kinematic import rotation
 from frbcli.case.reading.load import load_case, load_case_text
@@ -64,16 +63,10 @@ def ring_case(*settings: str) -> Case:
     return load_case_text(RING, settings, name="ring")
 
 
-def printed() -> list[dict[str, float]]:
-    lines = (DATA / "thermal-concentric.csv").read_text(encoding="utf-8").splitlines()
-    rows = csv.DictReader(line for line in lines if not line.startswith("#"))
-    return [{key: float(value) for key, value in row.items()} for row in rows]
-
-
 # --- the concentric limit --------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("row", printed(), ids=lambda row: f"{row['speed_Hz']:.0f}")
+@pytest.mark.parametrize("row", printed("thermal-concentric.csv"), ids=lambda row: f"{row['speed_Hz']:.0f}")
 def test_concentric_ring_has_the_temperatures_of_an_independent_balance(row: dict[str, float]) -> None:
     warm = warm_machine(ring_case(CONCENTRIC), row["speed_Hz"])
     inner, outer = warm.films

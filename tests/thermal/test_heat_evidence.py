@@ -1,4 +1,4 @@
-"""What the heat of a film rests on: its dissipation, printed tables of loss and flow, and the energy equation."""
+"""Evidence for heat and flow of films: dissipation by pressures, published charts, the energy equation, finer cells."""
 
 from __future__ import annotations
 
@@ -7,9 +7,12 @@ import math
 import numpy as np
 import pytest
 from energy_film import Bearing, solve
+from films import rectangular
+from marches import planned_system
 from printed_sheets import CASE, grooves
 
 from frbcli.case.reading.load import load_case, load_case_text
+from frbcli.film.cells.balance.ends import outflow
 from frbcli.film.cells.data import (
     ALONG,
     AROUND,
@@ -25,23 +28,24 @@ from frbcli.film.cells.data import (
 from frbcli.film.cells.film import Motion
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.gap import Section
+from frbcli.film.rectangles.end_flow import TableEndFlow, end_flow, make_end_flow
+from frbcli.film.rectangles.film import make_film
 from frbcli.linear.sheets.bearing import sommerfeld_chart
 from frbcli.materials import OILS
-from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 
 
 @pytest.mark.parametrize("cavitation", ["sommerfeld", "half-sommerfeld", "penalty", "reynolds", "two-phase"])
-@pytest.mark.parametrize("eccentricity", [0.7])
-def test_power_of_journal_shell_and_pump_is_the_dissipation(cavitation: str, eccentricity: float) -> None:
+def test_power_of_journal_shell_and_pump_is_the_dissipation(cavitation: str) -> None:
     """(e x F) omega / 2 - F . e' and the supply's pressure times its flow against the integral of
     h^3/(12 eta) grad p^2; Couette's part, the integral of eta u^2 / h, is the same on both sides."""
     supply = 1 if cavitation == "half-sommerfeld" else 2  # bar; a clipped pressure tells no flow out of a groove
     settings = [f"film.cavitation={cavitation}", "film.solution=cells", "accuracy.mesh=[24, 192]",
                 "bearing.ends=oil-bath", f"bearing.supply.pressure={supply} bar", "film.theory=auto"]  # fmt: skip
     case = load_case("jeffcott", settings)
-    (film,) = make_system(case, make_plan(case)).films.with_fields
-    omega, d = 900.0, (0.6 * eccentricity, -0.8 * eccentricity)
+    (film,) = planned_system(case).films.with_fields
+    omega, d = 900.0, (0.6 * 0.7, -0.8 * 0.7)
     motion = Motion(d, (20.0, 30.0), omega)
     solution = FilmSolver(film).steady(motion)
     pressure = film.pressure(solution.state)
@@ -139,3 +143,50 @@ def test_one_temperature_per_film_against_the_energy_equation() -> None:
             load, loss = ONE_TEMPERATURE[eccentricity, mixing]
             assert one.load / fields.load == pytest.approx(load, abs=0.02)
             assert one.power / fields.power == pytest.approx(loss, abs=0.02)
+
+
+def rectangle(**changes: object) -> Section:
+    values = {"width": 20e-3, "diameter": 25e-3, "clearance": 35e-6, "viscosity": 12e-3,
+              "ambient_pressure": 1e5, "cavitation_pressure": 1e5}  # fmt: skip
+    return rectangular(**(values | changes))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("eccentricity", [0.0, 0.5, 0.95])
+@pytest.mark.parametrize("pressure", [1e5, 3e5])
+def test_end_flow_is_that_of_fine_cells(eccentricity: float, pressure: float) -> None:
+    """The same linear film on finite volumes, its outflow where the pressure falls towards the end."""
+    cells = ["film.solution=cells", "accuracy.mesh=[40, 240]", "film.cavitation=sommerfeld", "bearing.ends=oil-bath"]
+    case = load_case("jeffcott", [f"bearing.supply.pressure={pressure}", *cells])
+    (film,) = planned_system(case).films.with_fields
+    omega, d = 900.0, np.array([0.6, -0.8]) * eccentricity
+    motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), omega)
+    solution = FilmSolver(film).steady(motion)
+    bearing = rectangle(groove=2, far_pressure=pressure - 1e5)
+    flow = make_end_flow(bearing, make_film(bearing, "finite", "half-sommerfeld", make_plan(case).mesh))
+    assert isinstance(flow, TableEndFlow)
+    w = 0.5 * omega * np.array([d[1], -d[0]])
+    found = bearing.clearance * end_flow(flow, *d, *w, 1.0)
+    assert found == pytest.approx(outflow(film, motion, solution.state.pressure), rel=5e-3, abs=1e-12)
+
+
+def test_end_flow_of_a_short_film_is_its_closed_form() -> None:
+    """Half-Sommerfeld, without a supply: eps omega R C B, the oil that the wedge draws in."""
+    bearing = rectangle()
+    flow = make_end_flow(bearing, make_film(bearing, "short", "half-sommerfeld", None))  # type: ignore[arg-type]
+    assert isinstance(flow, TableEndFlow)
+    found = bearing.clearance * end_flow(flow, 0.4, 0.0, 0.0, -0.5 * 0.4 * 900.0, 1.0)
+    assert found == pytest.approx(0.4 * 900.0 * 12.5e-3 * 35e-6 * 20e-3, rel=1e-3)
+
+
+def test_end_flow_between_axial_grooves_is_that_of_fine_cells() -> None:
+    settings = ["film.cavitation=sommerfeld", "bearing.ends=oil-bath", "film.solution=cells", "accuracy.mesh=[40, 240]"]
+    case = load_case("axial-groove", settings)
+    (film,) = planned_system(case).films.with_fields
+    plain = load_case("axial-groove")
+    system = planned_system(plain)
+    flow = make_end_flow(system.films.sections[0], system.films.loop[0])
+    d, omega = np.array([0.3, -0.4]), 900.0
+    motion = Motion((0.3, -0.4), (0.0, 0.0), omega)
+    w = 0.5 * omega * np.array([d[1], -d[0]])
+    found = system.clearances[0] * end_flow(flow, *d, *w, 1.0)
+    assert found == pytest.approx(outflow(film, motion, FilmSolver(film).steady(motion).state.pressure), rel=0.02)

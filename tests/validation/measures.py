@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import hashlib
 import math
 from collections.abc import Sequence
@@ -10,12 +9,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from paths import rows_of
 from scipy.linalg import eigh, null_space
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.film.gap import whole_width
-from frbcli.film.rectangles.film import evaluate, largest_pressure, make_film
+from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.linear.stability import Stability, stability
 from frbcli.results.store import Run
@@ -23,8 +23,6 @@ from frbcli.runs.run import runup
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
-
-DATA = Path(__file__).parent.parent / "data"
 
 RISEN = 0.6  # eccentricity beyond which the journal has left its resting position, ...
 SETTLED_s = 2.0  # ... after this time: a slow rotor rests there, too
@@ -76,14 +74,6 @@ def rise(run: Run) -> Rise:
 def eccentricity_at_1s(folder: Path, name: str, settings: Sequence[str] = ()) -> float:
     """Eccentricity after the first second of a shipped run-up."""
     return float(kept_runup(folder, load_case(name, (*FIRST_SECOND, *settings)))["eccentricity"][-1])
-
-
-def film_pressure(case: Case, eccentricity: float, speed_Hz: float) -> float:
-    """Largest absolute pressure in bar with the journal held still at an eccentricity."""
-    plan = make_plan(case)
-    bearing = make_system(case, plan).films.sections[0]
-    held = np.array([eccentricity * bearing.clearance, 0.0])
-    return largest_pressure(bearing, plan.mesh, held, np.zeros(2), 2 * math.pi * speed_Hz) / 1e5
 
 
 def threshold_Hz(case: Case) -> float:
@@ -176,6 +166,4 @@ def _force_error(film: FilmData, clearance: float, row: dict[str, str]) -> float
 
 
 def _rows(name: str) -> list[dict[str, str]]:
-    with (DATA / name).open(encoding="utf-8") as file:
-        table = csv.DictReader(line for line in file if not line.startswith("#"))
-        return [row for row in table if row["cavitation"] == "half-sommerfeld"]
+    return [row for row in rows_of(name) if row["cavitation"] == "half-sommerfeld"]

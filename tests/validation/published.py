@@ -14,15 +14,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from paths import DATA, rows_of
 
 from frbcli.analysis.events import find_events
 from frbcli.case.reading.load import load_case
 from frbcli.results.store import Run
 from validation.chapter6 import LOOSE, RAMP_Hz
 from validation.measured import listed
-from validation.measures import DATA, kept_runup
+from validation.measures import kept_runup
 
-FILE, ELEMENTS = DATA / "published-runs.csv", DATA / "published-runs-on-elements.csv"
+FILE = "published-runs.csv"
 SETTINGS = (
     "film.cavitation=two-phase", "film.two-phase.form=published", "accuracy.target=1e-2", "accuracy.mesh=[10, 40]"
 )  # fmt: skip
@@ -98,15 +99,10 @@ def row(wanted: Wanted, run: Run) -> dict[str, str]:
     return dict(zip(COLUMNS, told, strict=True))
 
 
-def _rows(file: Path) -> list[dict[str, str]]:
-    lines = file.read_text(encoding="utf-8").splitlines()
-    return list(csv.DictReader(line for line in lines if not line.startswith("#")))
-
-
 def table() -> list[str]:
     """The section on them."""
-    lines, elements = [HEAD], {row["what"]: row["eps_1s"] for row in _rows(ELEMENTS)}
-    for found in _rows(FILE):
+    lines, elements = [HEAD], {row["what"]: row["eps_1s"] for row in rows_of("published-runs-on-elements.csv")}
+    for found in rows_of(FILE):
         found = {name: "-" if value == "none" else value for name, value in found.items()}
         first = (found["eps_1s"], elements.get(found["what"], "-"), found["conservative_1s"], found["penalty_1s"])
         what = found["what"].replace("circumferential groove", "around").replace("axial groove", "axial")
@@ -121,7 +117,7 @@ def main(folder: Path, count: int) -> None:
     rows = []
     for wanted in RUNS[:count]:
         rows.append({**measured(folder, wanted), **beside(folder, wanted)})
-        with FILE.open("w", encoding="utf-8", newline="") as file:
+        with (DATA / FILE).open("w", encoding="utf-8", newline="") as file:
             file.write(f"# python -m validation.published; all with {' '.join(SETTINGS)}\n")
             table = csv.DictWriter(file, COLUMNS + BESIDE, lineterminator="\n")
             table.writeheader()

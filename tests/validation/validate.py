@@ -11,13 +11,15 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+from paths import DATA, DOCS
+
 from frbcli.case.reading.load import load_case
 from validation import chapter6_rows, chapter_7_page, forms, measures, published
 from validation.measured import Measured, number, speeds, with_reasons
 from validation.measured import rises as rising
-from validation.measures import DATA, RIGID
+from validation.measures import RIGID
 
-PAGE = Path(__file__).parent.parent.parent / "docs" / "validation.md"
+PAGE = DOCS / "validation.md"
 STIFFNESSES = ("1000 N/mm", "5000 N/mm", RIGID)
 PRESSURES = ("1 bar", "2 bar", "3 bar", "4 bar")
 AXIAL_PRESSURES = ("1 bar", "2 bar", "4 bar")

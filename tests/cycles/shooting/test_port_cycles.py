@@ -7,12 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from marches import planned_system
 from scipy.interpolate import CubicSpline
 
 import frbcli
 from frbcli.errors import InputError
-from frbcli.scene.machine.system import make_system
-from frbcli.scene.planning.plan import make_plan
 
 STILL = ["rotor.gravity=0", "rotor.unbalance=0 g*mm"]
 STIFFNESS, DAMPING, MASS, CUBIC, SHARE = 1e6, 300.0, 6.0, 1e15, 0.8
@@ -48,7 +47,7 @@ def test_a_cubic_spring_has_the_frequency_of_its_amplitude_in_a_whirl(springs: i
     whirl = math.sqrt(2.0 * STIFFNESS / MASS) / (2.0 * math.pi)
     assert hopf.speed_Hz == pytest.approx(whirl / SHARE, rel=2e-6)
     assert hopf.criticality == "supercritical"
-    port = make_system(case, make_plan(case)).rotor.ports[-1]
+    port = planned_system(case).rotor.ports[-1]
     cycles = branch.points[1:]
     assert any(point.kind == "asked" for point in cycles)
     for point in cycles:
@@ -66,7 +65,7 @@ def test_a_whirl_in_ball_bearings_has_their_force_over_its_amplitude() -> None:
     hard and turns back in a fold. The force goes by r alone but for the number of balls, 5e-4 of it."""
     case = frbcli.load_case("seal", [*ball("mean"), "speed.from=510 Hz", "speed.to=800 Hz"])
     diagram = frbcli.limit_cycles(case)
-    (port,) = make_system(case, make_plan(case)).rotor.ports
+    (port,) = planned_system(case).rotor.ports
     (hopf,), (fold,) = diagram.of("hopf"), diagram.of("fold")
     assert hopf.criticality == "subcritical"
     assert fold.speed_Hz < 0.7 * hopf.speed_Hz

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from marches import planned_system
 
 from frbcli.case.reading.load import load_case
 from frbcli.film.cells.balance.ends import ENDS_NET
@@ -14,8 +15,7 @@ from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, PRESSURE_SLOPE, RE
 from frbcli.film.cells.data import AREA
 from frbcli.film.cells.film import Motion, Storage
 from frbcli.film.gap import gap_height
-from frbcli.scene.machine.system import System, make_system
-from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.machine.system import System
 from frbcli.solve.films.cell_steps import Work
 from frbcli.solve.films.cells import HELD, cell_response, move_even
 from frbcli.solve.films.steps import make_work
@@ -27,7 +27,7 @@ PLACE, OMEGA, G = (0.3, -0.5), 600.0, 2e-5
 
 def system_of(*settings: str, cells: int = 5, law: str = "elrod") -> System:
     case = load_case("jeffcott", [*UNFED, f"film.cavitation={law}", f"accuracy.mesh=[{cells},48]", *settings])
-    return make_system(case, make_plan(case))
+    return planned_system(case)
 
 
 def work_of(system: System, spin: float, oil: np.ndarray) -> Work:

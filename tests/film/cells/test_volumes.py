@@ -8,7 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from volume_films import CLEARANCE, ROTATION, Row, law_of, motion_of, polar_motion, reference_rows, section_of
+from paths import rows_of
+from volume_films import CLEARANCE, ROTATION, Row, law_of, motion_of, polar_motion, section_of
 
 from frbcli.bearing_tests.steady_film import FilmMoment, steady_film
 from frbcli.errors import NotConverged
@@ -24,7 +25,7 @@ from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
 from frbcli.scene.planning.kinematic_plan import STEADY_CELLS
 
-ROWS = reference_rows()
+ROWS = rows_of("film-forces-all.csv")
 PRESSURE_ERROR, TORQUE_ERROR = 1e-2, 5e-3
 OIL_ERROR = 1e-2  # of the oil fraction, which the fronts make first order
 LARGEST_DEFECT = 1e-10

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import math
 
 import numpy as np
 import pytest
-from paths import DATA
+from paths import rows_of
 from volume_films import AMBIENT, CLEARANCE, RADIUS, VISCOSITY, WIDTH, section_of
 
 from frbcli.bearing_tests import history as marching
@@ -62,9 +61,8 @@ def vertical(film: VolumeFilm, moments: list[Moment]) -> np.ndarray:
 
 
 def reference() -> dict[tuple[str, str], list[float]]:
-    path = DATA / "squeeze-forces.csv"
-    rows = csv.DictReader(path.read_text(encoding="utf-8").splitlines())
     periods = ("period_1_Fy_max_N", "period_2_Fy_max_N", "period_3_Fy_max_N")
+    rows = rows_of("squeeze-forces.csv")
     return {(row["cavitation"].split()[0], row["ends"]): [float(row[key]) for key in periods] for row in rows}
 
 

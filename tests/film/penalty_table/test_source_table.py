@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
+from differences import differences
 
 import frbcli
 from frbcli.arrays import Array
@@ -101,16 +103,15 @@ def test_the_table_holds_what_was_solved(tabulated: tuple[SourceFilm, FilmData])
 def test_derivatives_are_those_of_the_table(tabulated: tuple[SourceFilm, FilmData]) -> None:
     film, table = tabulated
     clearance = film.section.clearance
+
+    def force(d: np.ndarray, v: np.ndarray) -> np.ndarray:
+        return evaluate(table, clearance, d, v, OMEGA).force
+
     for state in STATES:
         d, v = in_metres(film, state)
         found = evaluate(table, clearance, d, v, OMEGA)
-        small, slow = 1e-6 * clearance, 1e-5 * clearance * OMEGA
-        stiffness, damping = np.empty((2, 2)), np.empty((2, 2))
-        for i, unit in enumerate(np.eye(2)):
-            ahead, behind = (evaluate(table, clearance, d + side * small * unit, v, OMEGA).force for side in (1, -1))
-            stiffness[:, i] = (ahead - behind) / (2 * small)
-            ahead, behind = (evaluate(table, clearance, d, v + side * slow * unit, OMEGA).force for side in (1, -1))
-            damping[:, i] = (ahead - behind) / (2 * slow)
+        stiffness = differences(partial(force, v=v), d, 1e-6 * clearance)
+        damping = differences(partial(force, d), v, 1e-5 * clearance * OMEGA)
         assert found.by_displacement == pytest.approx(stiffness, abs=1e-6 * np.abs(stiffness).max())
         assert found.by_velocity == pytest.approx(damping, abs=1e-6 * np.abs(damping).max())
 

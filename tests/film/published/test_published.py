@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from differences import differences
 from films import rectangular
 
 from frbcli.arrays import Array
@@ -223,9 +224,7 @@ def test_stiffness_has_no_kinks(steepness: float) -> None:
     film, place = film_of(section, TwoPhase(steepness), (40, 10)), np.array([0.18, -0.06])
     linear = steady_force(film, clearance * place, np.zeros(2), omega).by_displacement * clearance
     for step in (1e-4, 1e-3):
-        columns = [steady(film, turning(*(place + side))) - steady(film, turning(*(place - side)))
-                   for side in step * np.eye(2)]  # fmt: skip
-        measured = np.column_stack(columns) / (2.0 * step)
+        measured = differences(lambda place: steady(film, turning(*place)), place, step)
         assert measured == pytest.approx(linear, abs=2e-3 * np.abs(linear).max())
 
 

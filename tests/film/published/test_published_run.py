@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 from marches import planned, run_up
-from paths import DATA
+from paths import rows_of
 
 import frbcli
 from frbcli.case.reading.load import load_case
@@ -92,13 +91,8 @@ def test_a_run_reports_it(tmp_path: Path) -> None:
     assert "oil_created_m3" in cost
 
 
-def rows_of_elements() -> dict[str, dict[str, str]]:
-    """Run-ups of 1 s on 20 x 10 quadratic elements, see the head of the file."""
-    text = (DATA / "published-runs-on-elements.csv").read_text(encoding="utf-8")
-    return {row["what"]: row for row in csv.DictReader(line for line in text.splitlines() if not line.startswith("#"))}
-
-
-ELEMENTS = rows_of_elements()
+# Run-ups of 1 s on 20 x 10 quadratic elements, see the head of the file.
+ELEMENTS = {row["what"]: row for row in rows_of("published-runs-on-elements.csv")}
 
 
 ALIKE = ("circumferential groove, 1 bar, x_1 = 0.99", "axial groove, 2 bar, x_1 = 0.99")  # the rigid rotor; at 1 bar

@@ -1,16 +1,18 @@
-"""Films between axial grooves: against the plain solve, the independent program, and what symmetry says."""
+"""Films between axial grooves and their modes: against the plain solve, a library of finite elements, the independent
+program, and what symmetry says."""
 
 from __future__ import annotations
 
-import csv
 import math
 
 import numpy as np
 import pytest
+from differences import differences
 from films import rectangular
-from paths import DATA
+from paths import rows_of
+from skfem import Basis, BilinearForm, ElementLineP2, MeshLine, asm
+from volume_films import motion_of
 
-from frbcli.arrays import Array
 from frbcli.film.gap import AxialGroove, Section
 from frbcli.film.grid import Mesh, axial_modes, axial_vertices
 from frbcli.film.rectangles.chain import chain_grid, element_matrices, mode_fields
@@ -19,7 +21,6 @@ from frbcli.film.rectangles.film_force import FilmData
 
 CLEARANCE = 40e-6
 MESH = Mesh(6, 48)
-AXIS = np.eye(2)
 
 
 def grooved(pressure: float, count: int = 1, position: float = 0.0) -> Section:
@@ -32,24 +33,17 @@ def grooved(pressure: float, count: int = 1, position: float = 0.0) -> Section:
 FILMS = {pressure: make_film(grooved(pressure), "finite", "half-sommerfeld", MESH) for pressure in (1e5, 2e5)}
 
 
-def rows() -> list[dict[str, str]]:
-    path = DATA / "film-forces-all.csv"
-    lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
-    return [
-        row
-        for row in csv.DictReader(lines)
-        if row["supply"] == "axial-groove" and row["cavitation"] == "half-sommerfeld"
-    ]
+ROWS = [
+    row
+    for row in rows_of("film-forces-all.csv")
+    if row["supply"] == "axial-groove" and row["cavitation"] == "half-sommerfeld"
+]
 
 
 def at(film: FilmData, row: dict[str, str], turned: float = 0.0) -> FilmForce:
     """The film's force at the position and motion of a row, all turned by an angle."""
-    eccentricity, angle = float(row["eccentricity"]), math.radians(float(row["attitude_deg"])) + turned
-    along, across = np.array([math.cos(angle), math.sin(angle)]), np.array([-math.sin(angle), math.cos(angle)])
-    rate, whirl = float(row["eccentricity_rate_1_s"]), float(row["whirl_speed_rad_s"])
-    velocity = CLEARANCE * (rate * along + eccentricity * whirl * across)
-    omega = 2 * math.pi * float(row["speed_Hz"])
-    return evaluate(film, CLEARANCE, CLEARANCE * eccentricity * along, velocity, omega)
+    motion = motion_of(row | {"attitude_deg": str(float(row["attitude_deg"]) + math.degrees(turned))})
+    return evaluate(film, CLEARANCE, CLEARANCE * np.array(motion.d), CLEARANCE * np.array(motion.v), motion.omega)
 
 
 def row_id(row: dict[str, str]) -> str:
@@ -57,7 +51,7 @@ def row_id(row: dict[str, str]) -> str:
     return "-".join(row[name] for name in names)
 
 
-@pytest.mark.parametrize("row", rows(), ids=row_id)
+@pytest.mark.parametrize("row", ROWS, ids=row_id)
 def test_force_of_the_independent_program(row: dict[str, str]) -> None:
     expected = np.array([float(row["Fx_N"]), float(row["Fy_N"])])
     force = at(FILMS[1e5 * float(row["supply_pressure_bar"])], row).force
@@ -120,28 +114,42 @@ def test_derivatives_are_those_of_the_force(cavitation: str, pressure: float) ->
     place, velocity, omega = CLEARANCE * np.array([0.4, -0.5]), CLEARANCE * np.array([30.0, -80.0]), 400.0
     exact = evaluate(film, CLEARANCE, place, velocity, omega)
     step = 1e-5 * CLEARANCE
-
-    def differences(of_place: float, of_velocity: float) -> Array:
-        columns = []
-        for unit in AXIS:
-            ahead = evaluate(film, CLEARANCE, place + of_place * unit, velocity + of_velocity * unit, omega).force
-            behind = evaluate(film, CLEARANCE, place - of_place * unit, velocity - of_velocity * unit, omega).force
-            columns.append((ahead - behind) / (2 * (of_place + of_velocity)))
-        return np.stack(columns, axis=1)
-
-    for measured, stated in (
-        (differences(step, 0.0), exact.by_displacement),
-        (differences(0.0, 400 * step), exact.by_velocity),
-    ):
+    by_place = differences(lambda d: evaluate(film, CLEARANCE, d, velocity, omega).force, place, step)
+    by_rate = differences(lambda v: evaluate(film, CLEARANCE, place, v, omega).force, velocity, 400 * step)
+    for measured, stated in ((by_place, exact.by_displacement), (by_rate, exact.by_velocity)):
         assert measured == pytest.approx(stated, abs=1e-6 * float(np.abs(stated).max()))
 
 
 def test_turning_bearing_and_motion_turns_the_force() -> None:
     turn = 1.1
-    row = rows()[10]
+    row = ROWS[10]
     here = at(FILMS[1e5 * float(row["supply_pressure_bar"])], row).force
     pressure = 1e5 * float(row["supply_pressure_bar"])
     turned = make_film(grooved(pressure, position=turn), "finite", "half-sommerfeld", MESH)
     there = at(turned, row, turn).force
     rotation = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
     assert there == pytest.approx(rotation @ here, rel=1e-10)
+
+
+@BilinearForm
+def slopes(u, v, _):  # type: ignore[no-untyped-def]
+    return u.grad[0] * v.grad[0]
+
+
+@BilinearForm
+def values(u, v, _):  # type: ignore[no-untyped-def]
+    return u * v
+
+
+@pytest.mark.parametrize("elements", [1, 4, 9])
+def test_modes_are_those_of_the_forms_that_a_library_assembles(elements: int) -> None:
+    vertices = axial_vertices(elements)
+    modes = axial_modes(vertices)
+    basis = Basis(MeshLine(vertices), ElementLineP2(), intorder=4)
+    order = np.argsort(basis.doflocs[0])
+    stiffness, mass = (asm(form, basis).toarray()[np.ix_(order, order)] for form in (slopes, values))
+    np.testing.assert_allclose(modes.nodes, basis.doflocs[0][order], rtol=0, atol=1e-15)
+    np.testing.assert_allclose(modes.mass, mass, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(modes.shapes @ mass @ modes.shapes.T, np.eye(len(modes.shapes)), rtol=0, atol=1e-12)
+    by_form = modes.shapes @ stiffness @ modes.shapes.T
+    np.testing.assert_allclose(by_form, np.diag(modes.eigenvalues), rtol=0, atol=1e-9 * modes.eigenvalues.max())

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import astuple, replace
+from functools import partial
 
 import numpy as np
 import pytest
+from differences import differences
 from flows import oil_paths, path_layers
 
 from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds, Sommerfeld
@@ -146,6 +148,11 @@ def test_the_oil_that_carries_gas_takes_the_plain_paths(section: Section, total:
         assert expected[GIVEN].max() > 0.0
 
 
+def moved_balances(data: TiltedVolumes, number: int, states: np.ndarray, keeps: bool, v: np.ndarray) -> np.ndarray:
+    past, rate = np.zeros(states.shape[1:]), (1.0 / G if keeps else 0.0)
+    return kernel(data, number, states, D + G * (v - V), v, G, rate, past)[1]
+
+
 @pytest.mark.parametrize("keeps", [False, True])
 @pytest.mark.parametrize("section", SECTIONS.values(), ids=SECTIONS)
 def test_derivatives_by_velocities_are_those_of_differences(section: Section, keeps: bool) -> None:
@@ -153,17 +160,9 @@ def test_derivatives_by_velocities_are_those_of_differences(section: Section, ke
     data, lands = lands_of(section, TwoPhase(0.9))
     for number, land in enumerate(lands):
         states, _ = some_states(land.film)
-        k, past, rate = states.shape[2], np.zeros(states.shape[1:]), (1.0 / G if keeps else 0.0)
-        _, right, _ = kernel(data, number, states, D, V, G, rate, past)
-        for i, unit in enumerate(np.eye(4)):
-            step = 4.0
-            ahead, behind = (
-                kernel(data, number, states, D + side * G * step * unit, V + side * step * unit, G, rate, past)[1]
-                for side in (1.0, -1.0)
-            )
-            by_difference = (ahead[:, :, k] - behind[:, :, k]) / (2.0 * step)
-            exact = right[:, :, k + BY_ENDS + i]
-            assert np.abs(exact - by_difference).max() < 1e-7 * np.abs(by_difference).max()
+        k, right = states.shape[2], partial(moved_balances, data, number, states, keeps)
+        measured, exact = differences(right, V, 4.0)[:, :, k], right(V)[:, :, k + BY_ENDS : k + BY_ENDS + 4]
+        assert np.all(np.abs(exact - measured).max(axis=(0, 1)) < 1e-7 * np.abs(measured).max(axis=(0, 1)))
 
 
 def loads_of(data: TiltedVolumes, number: int, states: np.ndarray, fields: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -171,6 +170,15 @@ def loads_of(data: TiltedVolumes, number: int, states: np.ndarray, fields: np.nd
     given = (part[number] for part in (data.films, data.ring, data.places, data.cells))
     film_loads(*given, states, fields, push, loads, slopes)
     return loads, slopes
+
+
+def moved_loads(
+    data: TiltedVolumes, number: int, states: np.ndarray, fields: np.ndarray, by: np.ndarray
+) -> np.ndarray:
+    """The loads after the ends have moved by (4,)."""
+    changed, k = fields.copy(), states.shape[2]
+    changed[:, :, k] += fields[:, :, k + BY_ENDS : k + BY_ENDS + 4] @ by
+    return loads_of(data, number, states, changed)[0]
 
 
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
@@ -191,10 +199,5 @@ def test_loads_do_the_work_of_the_plain_ones(section: str, law: Law) -> None:
         by_ends = np.array([[1.0 - ends.mean(), ends.mean()], [ends[0] - ends[1], ends[1] - ends[0]]])
         expected = np.kron(by_ends, np.eye(2)).T @ _loads(film, film.mean_pressure(changed))
         assert loads == pytest.approx(expected, abs=1e-12 * np.abs(expected).max())
-        for b in range(4):
-            step, difference = 1e-6, np.zeros(4)
-            for side in (1.0, -1.0):
-                moved = fields.copy()
-                moved[:, :, k] += side * step * fields[:, :, k + BY_ENDS + b]
-                difference += side * loads_of(data, number, states, moved)[0] / (2.0 * step)
-            assert np.abs(slopes[:, b] - difference).max() < 1e-6 * np.abs(slopes).max()
+        measured = differences(partial(moved_loads, data, number, states, fields), np.zeros(4), 1e-6)
+        assert np.abs(slopes - measured).max() < 1e-6 * np.abs(slopes).max()

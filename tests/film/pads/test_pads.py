@@ -1,4 +1,5 @@
-"""Films on pads: closed forms, derivatives, balances and symmetries."""
+"""Films on pads: closed forms, derivatives, balances, symmetries, their table over the gap, and tapered-land bearings
+against an independent finite-volume program."""
 
 from __future__ import annotations
 
@@ -7,10 +8,25 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from differences import differences
+from paths import rows_of
 from scipy.sparse import csr_matrix
 
-from frbcli.film.pad_geometry import Pad, Profile
-from frbcli.film.pads import AT_REST, PadFilm, PadMesh, PadOil, RunnerMotion, pad_film, pad_mesh, ring_of_pads
+from frbcli.case.reading.load import case_from_dict
+from frbcli.case.schema import Case
+from frbcli.film.pad_geometry import MESH, Pad, Profile
+from frbcli.film.pads import (
+    AT_REST,
+    PadFilm,
+    PadMesh,
+    PadOil,
+    RunnerMotion,
+    gap_table,
+    pad_film,
+    pad_mesh,
+    ring_of_pads,
+)
+from frbcli.linear.sheets.thrust import thrust_sheet
 
 PAD = Pad(5e-3, 11e-3, math.radians(75.0), math.radians(50.0), 20e-6)
 VISCOSITY, OMEGA, LAND = 8e-3, 2.0 * math.pi * 2000.0, 15e-6
@@ -83,17 +99,13 @@ def test_stiffness_and_damping_are_the_derivatives_of_forces_and_moments(law: st
     small = 1e-3 if law == "half-sommerfeld" else 1.0  # so that no point of integration passes the cut
     for part, matrix, sizes in (("displacement", found.stiffness, (1e-10, 1e-8, 1e-8)),
                                 ("rate", found.damping, (1e-5, 1e-3, 1e-3))):  # fmt: skip
-        steps = [small * size for size in sizes]
-        scale = np.array([1.0, 100.0, 100.0])  # of forces and moments
-        for i, step in enumerate(steps):
-            forces = []
-            for sign in (1.0, -1.0):
-                values = list(getattr(motion, part))
-                values[i] += sign * step
-                forces.append(film(motion=replace(motion, **{part: tuple(values)}), law=law).forces)
-            numeric = -(forces[0] - forces[1]) / (2.0 * step)
-            np.testing.assert_allclose(scale * matrix[:, i], scale * numeric, rtol=0,
-                                       atol=1e-6 * np.abs(scale * numeric).max())  # fmt: skip
+        scale = np.array([[1.0], [100.0], [100.0]])  # of forces and moments
+
+        def forces(values: np.ndarray, part: str = part) -> np.ndarray:
+            return film(motion=replace(motion, **{part: tuple(values)}), law=law).forces
+
+        numeric = -scale * differences(forces, getattr(motion, part), small * np.array(sizes))
+        assert np.all(np.abs(scale * matrix - numeric) <= 1e-6 * np.abs(numeric).max(axis=0))
 
 
 @pytest.mark.parametrize("motion", [RunnerMotion(), TILTED])
@@ -128,3 +140,68 @@ def test_a_cavity_by_reynolds_keeps_the_pressure_and_takes_no_tension() -> None:
     assert half.pressure.min() == reynolds.pressure.min() == 0.0
     assert full.forces[0] < reynolds.forces[0]
     assert 0.0 < half.forces[0] < reynolds.forces[0]
+
+
+# Of a step a hundred times as deep as the thinnest gap, round-off is 1.5e-8 of the stiffness across a tilt there, by
+# mobilities in the ratio of 1e6; polynomials spread it over all gaps. At 1e-7 m it would be 3e-7.
+THIN, WIDE, PADS = 2e-7, 2e-3, 4
+
+
+@pytest.mark.parametrize("profile", ["taper", "step"])
+def test_table_is_the_film_at_any_speed_and_viscosity(profile: Profile) -> None:
+    pad = Pad(5e-3, 11e-3, math.radians(75.0), math.radians(50.0), 20e-6, profile)
+    table, mesh, eta, omega = gap_table(pad, PADS, THIN, WIDE), pad_mesh(pad, *MESH), 8e-3, 2.0 * math.pi * 2000.0
+    for gap in (2.7e-7, 6.1e-6, 3.3e-5, 9e-4):
+        film = ring_of_pads(pad_film(mesh, gap + pad.depth(mesh.theta), PadOil(eta), omega), PADS)
+        scaled = table.at(gap)
+        assert eta * omega * scaled.load == pytest.approx(film.forces[0], rel=1e-7)
+        assert eta * omega * scaled.torque == pytest.approx(film.torque, rel=1e-7)
+        assert omega * scaled.side_flow == pytest.approx(film.inner_flow + film.outer_flow, rel=1e-7)
+        assert eta * omega * scaled.stiffness == pytest.approx(film.stiffness[0, 0], rel=1e-7)
+        assert eta * scaled.damping == pytest.approx(film.damping[0, 0], rel=1e-7)
+        tilt = film.stiffness[1:, 1:]
+        assert eta * omega * scaled.tilt_stiffness == pytest.approx(tilt, abs=1e-7 * np.abs(tilt).max())
+        assert eta * scaled.tilt_damping == pytest.approx(film.damping[1:, 1:], abs=1e-7 * film.damping[1, 1])
+        assert film.pressure.min() >= 0.0  # else films would not scale with speed and viscosity
+
+
+REFERENCE_ERROR = 3e-4
+ROWS = rows_of("thrust-tapered-land.csv")
+# pads, taper in um, angle of the taper in deg, radii in mm, angle of a pad in deg, viscosity in Pa s, speed in Hz
+BEARINGS = {"A": (4, 20.0, 50.0, 5.0, 11.0, 75.0, 8e-3, 2000.0), "B": (6, 40.0, 40.0, 15.0, 30.0, 50.0, 12e-3, 600.0)}
+
+
+def case_of(name: str) -> Case:
+    pads, taper, taper_angle, inner, outer, angle, viscosity, _ = BEARINGS[name]
+    return case_from_dict({
+        "oil": {"viscosity": viscosity},
+        "thrust_bearing": [{
+            "side": "left", "pads": pads, "taper": f"{taper} um", "taper_angle": f"{taper_angle} deg",
+            "inner_radius": f"{inner} mm", "outer_radius": f"{outer} mm", "pad_angle": f"{angle} deg",
+        }],
+    })  # fmt: skip
+
+
+def printed(row: dict[str, str]) -> dict[str, float]:
+    return {key: float(value) for key, value in row.items() if key != "case"}
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row['case']} {row['h0_um']} um")
+def test_the_planned_mesh_is_within_its_stated_error(row: dict[str, str]) -> None:
+    known = printed(row)
+    case, speed = case_of(row["case"]), BEARINGS[row["case"]][-1]
+    (state,) = thrust_sheet(case, [1e-6 * known["h0_um"]], [speed]).points
+    assert state.load == pytest.approx(known["load_N"], rel=state.load_error + REFERENCE_ERROR)
+    assert state.load_error < 1e-3
+    allowed = state.coefficient_error + REFERENCE_ERROR
+    assert state.stiffness == pytest.approx(known["k_zz_N_m"], rel=allowed)
+    assert state.damping == pytest.approx(known["c_zz_Ns_m"], rel=allowed)
+    direct, cross = known["k_tilt_Nm_rad"], known["k_tilt_cross_Nm_rad"]
+    np.testing.assert_allclose(state.tilt_stiffness, [[direct, -cross], [cross, direct]], atol=allowed * direct)
+    c = known["c_tilt_Nms_rad"]
+    np.testing.assert_allclose(state.tilt_damping, c * np.eye(2), rtol=0, atol=allowed * c)
+    assert state.coefficient_error < 2e-3
+    for found, name in ((state.torque, "torque_Nm"), (state.flow_inner, "q_inner_m3_s"),
+                        (state.flow_outer, "q_outer_m3_s"), (state.flow_leading, "q_leading_m3_s"),
+                        (state.p_max - 1e5, "p_max_Pa")):  # fmt: skip
+        assert found == pytest.approx(known[name], rel=2e-3), name

@@ -1,21 +1,31 @@
-"""Bores of the size of a cell: flows, forces and areas are those of their true shape, wherever they lie."""
+"""Bores of the size of a cell, whose flows, forces and areas are those of their true shape wherever they lie; and slots
+along a part of the width, against pockets, symmetries and a closed form."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from differences import differences
 
+from frbcli import load_case
+from frbcli.case.schema import Case
+from frbcli.cli.main import run
 from frbcli.film.cavitation.conditions import Elrod, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution
-from frbcli.film.cells.loads import force, oil_balance
+from frbcli.film.cells.loads import force, loads, oil_balance
 from frbcli.film.cells.mesh.grid import VolumeGrid, force_weights, run_grid, volume_grid
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Hole, Section
+from frbcli.film.section_faults import section_faults
+from frbcli.report.sketch import film_sketches, rotor_sketch
+from frbcli.runs.run import runup
+from frbcli.scene.films import film_places, film_section, volume_film
 from frbcli.scene.planning.cell_choice import BORES_OIL
 
 RADIUS, WIDTH, CLEARANCE, VISCOSITY, GAUGE, COUNT = 12.5e-3, 20e-3, 40e-6, 12e-3, 1e5, 6
@@ -105,7 +115,7 @@ def test_force_is_of_second_order_and_the_same_wherever_bores_lie(law: Law, ecce
 def test_a_journal_rests_where_the_plan_expects_it(law: Law, eccentricity: float) -> None:
     """What the force on 48 x 6 cells is off by moves a journal at rest by less than half of the error that the plan
     expects of them; its bores lie beside the narrowest gap."""
-    beside, step = TURN / (2 * COUNT), 2e-3
+    beside = TURN / (2 * COUNT)
 
     def pushed(cells: int, x: float = 0.0, y: float = 0.0, shift: float = 0.0) -> np.ndarray:
         """Force on a journal at (x, -eccentricity + y), turned with its bores by `shift` and back."""
@@ -114,9 +124,7 @@ def test_a_journal_rests_where_the_plan_expects_it(law: Law, eccentricity: float
         f = force_of(bored(beside + shift), cells, cells // 8, law, Motion(d, (0.0, 0.0), 942.0))
         return np.array([c * f[0] + s * f[1], c * f[1] - s * f[0]])
 
-    by_x = pushed(96, x=step) - pushed(96, x=-step)
-    by_y = pushed(96, y=step) - pushed(96, y=-step)
-    stiffness = np.column_stack([by_x, by_y]) / (2.0 * step)
+    stiffness = differences(lambda at: pushed(96, *at), (0.0, 0.0), 2e-3)
     finer, finest = pushed(144), pushed(192)
     limit = finest + (finest - finer) / ((192 / 144) ** 2 - 1.0)
     moved = [
@@ -164,3 +172,79 @@ def test_a_warm_film_has_the_cells_of_the_cold_one() -> None:
         expected = volume_grid(section, grid.phi, grid.z)
         for name in ("around", "along", "at", "area", "load", "cover", "fixed_pressure"):
             np.testing.assert_array_equal(getattr(grid, name), getattr(expected, name))
+
+
+CELLS, FINE = (48, 6), (192, 24)
+
+
+def case_of(*settings: str, count: int = 2, length: str = "10 mm", angle: str = "10 deg") -> Case:
+    sizes = f'position = "0 deg", opening_angle = "{angle}", length = "{length}", pressure = "2 bar"'
+    return load_case("rigid", [f'bearing.supply={{ kind = "axial-slots", count = {count}, {sizes} }}', *settings])
+
+
+def pocket_of(length: str) -> Case:
+    sizes = f'position = "0 deg", opening_angle = "10 deg", width = "{length}", pressure = "2 bar"'
+    return load_case("rigid", [f'bearing.supply={{ kind = "pocket", {sizes} }}'])
+
+
+def push(
+    case: Case, d: tuple[float, float], v: tuple[float, float], omega: float, cells: tuple[int, int] = CELLS
+) -> np.ndarray:
+    film, motion = volume_film(case, film_places(case)[0], cells), Motion(d, v, omega)
+    return np.array(loads(film, motion, FilmSolver(film).steady(motion)).force)
+
+
+@pytest.mark.parametrize("length", ["10 mm", "20 mm"])
+def test_one_slot_is_a_pocket_of_the_same_size(length: str) -> None:
+    """20 mm is the whole width of the bearing."""
+    slot, pocket = case_of(count=1, length=length), pocket_of(length)
+    sections = [film_section(case, case.bearings[0]) for case in (slot, pocket)]  # type: ignore[arg-type]
+    assert sections[0] == sections[1]
+    assert section_faults(sections[0]) == []
+    motion = ((0.4, -0.3), (2.0, 5.0), 300.0)
+    assert push(slot, *motion) == pytest.approx(push(pocket, *motion), rel=1e-12)
+
+
+def test_two_slots_have_the_symmetry_of_a_half_turn() -> None:
+    """The push turns with a motion that is turned by half a turn. One slot pushes the journal away from it."""
+    d, v, omega = (0.4, -0.3), (2.0, 5.0), 300.0
+    turned = (-d[0], -d[1]), (-v[0], -v[1]), omega
+    found = push(case_of(), d, v, omega)
+    assert push(case_of(), *turned) == pytest.approx(-found, rel=1e-9, abs=1e-9 * float(np.linalg.norm(found)))
+    still = (0.0, 0.0), (0.0, 0.0), 0.0
+    one = push(case_of(count=1), *still)
+    assert one[1] < -1.0
+    assert abs(one[0]) < 1e-9 * abs(one[1])
+    assert np.abs(push(case_of(), *still)).max() < 1e-9 * abs(one[1])
+
+
+def test_force_of_a_slot_over_the_width_is_its_closed_form() -> None:
+    """Laplace's equation on the gap of a journal at rest: beside the slot the modes sin(n pi z / B) with odd n decay
+    with exp(-n pi R phi / B)."""
+    radius, width, half, gauge = 12.5e-3, 20e-3, math.radians(5.0), 1e5
+    n = np.arange(1.0, 4001.0, 2.0)
+    a = n * math.pi * radius / width
+    beside = 2.0 * (8.0 * width / (math.pi * n) ** 2) @ ((a * math.cos(half) - math.sin(half)) / (a**2 + 1.0))
+    expected = gauge * radius * (2.0 * width * math.sin(half) + beside)
+    still = (0.0, 0.0), (0.0, 0.0), 0.0
+    errors = [-push(case_of(count=1, length="20 mm"), *still, cells)[1] / expected - 1.0 for cells in (CELLS, FINE)]
+    assert abs(errors[0]) < 1e-2
+    assert abs(errors[1]) < 1e-3
+    shorter = [-push(case_of(count=1, length=f"{mm} mm"), *still)[1] for mm in (1, 5, 10, 15, 20)]
+    assert np.diff(shorter).min() > 1.0
+
+
+def test_check_and_sketch_tell_of_slots(capsys: pytest.CaptureFixture[str]) -> None:
+    case = case_of()
+    slots = 'bearing.supply={kind="axial-slots", count=2, opening_angle="10 deg", length="10 mm", pressure="2 bar"}'
+    assert run(["check", "rigid", "--set", slots]) == 0
+    assert "2 axial slots, 2 bar" in capsys.readouterr().out
+    (_, around), = film_sketches(case)
+    (_, around_one), = film_sketches(case_of(count=1))
+    assert around.count('"oil"') == 2 * around_one.count('"oil"') == 2
+    assert rotor_sketch(case)[0].count('"oil"') == 4  # above and below the axis, in both bearings
+
+
+def test_a_rotor_runs_on_slots(tmp_path: Path) -> None:
+    found = runup(case_of("speed.duration=0.02 s"), tmp_path / "run.h5")
+    assert found.status == "finished"
