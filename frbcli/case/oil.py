@@ -53,8 +53,9 @@ GradeName: Any = Literal[tuple(OILS)]
 
 
 def _plain(name: str) -> str:
-    """A grade without what its spellings differ in: "VG32" and "ISO VG 32" are one."""
-    return re.sub(r"[\s-]", "", name).upper().removeprefix("ISO")
+    """A grade without what its spellings differ in: "VG32" and "ISO VG 32", "0W20" and "SAE 0W-20" are one."""
+    plain = re.sub(r"[\s-]", "", name).upper().removeprefix("ISO")
+    return f"SAE{plain}" if re.fullmatch(r"\d+W\d+", plain) else plain
 
 
 SPELLED = {_plain(name): name for name in OILS}

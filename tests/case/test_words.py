@@ -44,6 +44,12 @@ def test_a_grade_is_known_by_its_spellings(written: str) -> None:
     assert grades[0].oil == grades[1].oil
 
 
+def test_a_multigrade_needs_no_sae() -> None:
+    grades = [load_case("jeffcott", [f"oil.viscosity={name}", "oil.temperature=90 degC"])
+              for name in ("0W20", "0W-20", "SAE 0W-20")]  # fmt: skip
+    assert grades[0].oil == grades[1].oil == grades[2].oil
+
+
 @pytest.mark.parametrize(
     ("setting", "said"),
     [
@@ -55,6 +61,20 @@ def test_a_grade_is_known_by_its_spellings(written: str) -> None:
         ("bearing.kind=deep-groove", 'Write kind = "ball".'),
         ("film.cavitation=JFO", 'Write "elrod"'),
         ("film.cavitation=Gumbel", 'Write "half-sommerfeld"'),
+        ("film.cavitation=Guembel", 'Write "half-sommerfeld"'),
+        ("film.cavitation=mass conserving", 'Write "elrod"'),
+        ("film.theory=Ocvirk", 'Write "short"'),
+        ("film.theory=infinite", 'The width counts always: write "finite"'),
+        ("rotor.kind=de Laval", 'Write kind = "jeffcott"'),
+        ("rotor.kind=flexible", 'Write kind = "turbocharger"'),
+        ("bearing.kind=SFD", "Write [bearing.damper]"),
+        ("bearing.ends=flooded", 'Write "oil-bath"'),
+        ("bearing.play=70 um", "Write clearance, half of a diametral play: 35 um."),
+        ("bearing.D=25 mm", "Write diameter."),
+        ("oil.eta=0.012", 'Write viscosity = "12 mPa*s"'),
+        ("rotor.zeta=0.01", "Write shaft_damping, 2 zeta times"),
+        ("gravity=0", "Write gravity in [rotor]."),
+        ("output.fs=10 kHz", "Write step, the inverse of the rate."),
         ("speed.max=9000 rpm", "Write to."),
         ("rotor.eccentricity=1 um", "Write unbalance"),
         ("oil.grade=VG 32", 'Write viscosity = "ISO VG 32"'),

@@ -30,26 +30,43 @@ _FORMS = {
 
 CAVITATION: Path = ("film", "cavitation")  # which takes names that are added from Python
 
-# Names that engineers know and a case does not have: a part of the name, and what takes its place
-KINDS_ELSEWHERE = {
-    "semi": 'A ring that may not turn is kind = "floating-ring" with [bearing.pin], or with ring.spin = "blocked"; '
-            'one ring over both journals is kind = "cartridge".',
-    **dict.fromkeys(
-        ("pad", "foil", "roller", "needle", "magnet"),
-        'It is not modelled: kind = "coefficients" takes its stiffness and damping.',
-    ),
-    **dict.fromkeys(("plain", "journal", "hydrodynamic", "sleeve", "lemon"), 'Write kind = "single-film".'),
-    **dict.fromkeys(("contact", "rolling", "deep"), 'Write kind = "ball".'),
-    **dict.fromkeys(("spring", "linear", "rigid"), 'Write kind = "coefficients", with stiffness and damping.'),
+# Words that engineers know and a case does not have, with what takes their place: parts of the value of a key, by the
+# key, or by the table whose kind it is.
+VALUES_ELSEWHERE = {
+    "bearing": {
+        "semi": 'A ring that may not turn is kind = "floating-ring" with [bearing.pin], or with ring.spin = "blocked"; '
+                'one ring over both journals is kind = "cartridge".',
+        **dict.fromkeys(
+            ("pad", "foil", "roller", "needle", "magnet"),
+            'It is not modelled: kind = "coefficients" takes its stiffness and damping.',
+        ),
+        **dict.fromkeys(("sfd", "squeeze", "damper"), "Write [bearing.damper], the film around a bearing."),
+        **dict.fromkeys(("plain", "journal", "hydrodynamic", "sleeve", "lemon"), 'Write kind = "single-film".'),
+        **dict.fromkeys(("contact", "rolling", "deep"), 'Write kind = "ball".'),
+        **dict.fromkeys(("spring", "linear", "rigid"), 'Write kind = "coefficients", with stiffness and damping.'),
+    },
+    "rotor": {
+        "laval": 'Write kind = "jeffcott".',
+        **dict.fromkeys(("flex", "elastic", "shaft", "beam"), 'Write kind = "turbocharger", with sections [[shaft]].'),
+    },
+    "cavitation": {
+        **dict.fromkeys(("gumbel", "gümbel", "guembel", "pi-film"), 'Write "half-sommerfeld".'),
+        **dict.fromkeys(("jfo", "jakobsson", "ausas", "conserv"), 'Write "elrod", which is this model.'),
+        **dict.fromkeys(("swift", "stieber", "christopherson"), 'Write "reynolds".'),
+        **dict.fromkeys(("full-sommerfeld", "none", "2pi"), 'Write "sommerfeld".'),
+    },
+    "theory": {
+        **dict.fromkeys(("ocvirk", "dubois", "narrow"), 'Write "short".'),
+        **dict.fromkeys(("long", "infinite"), 'The width counts always: write "finite".'),
+        **dict.fromkeys(("fem", "fvm", "fdm", "element", "volume", "full", "2d"), 'Write "finite".'),
+    },
+    "ends": {
+        **dict.fromkeys(("open", "air", "ambient"), 'Write "free-to-air".'),
+        **dict.fromkeys(("flood", "bath", "submerged"), 'Write "oil-bath".'),
+    },
 }  # fmt: skip
-LAWS_ELSEWHERE = {
-    **dict.fromkeys(("gumbel", "gümbel", "gumbel-sommerfeld"), 'Write "half-sommerfeld".'),
-    **dict.fromkeys(("jfo", "jakobsson-floberg-olsson", "jakobsson-floberg"), 'Write "elrod", which is this model.'),
-    **dict.fromkeys(("swift-stieber", "christopherson"), 'Write "reynolds".'),
-    **dict.fromkeys(("full-sommerfeld", "none", "2pi"), 'Write "sommerfeld".'),
-    **dict.fromkeys(("pi-film", "pi"), 'Write "half-sommerfeld".'),
-}
 OVER_RATE = "Write duration, the difference of the speeds over this rate."
+OF_RATIO = "Write shaft_damping, 2 zeta times the root of stiffness times mass."
 KEYS_ELSEWHERE = {  # (the key that takes its place, in whose table alone it is answered; the words)
     "radius": ("diameter", "Write diameter{twice}."),
     "L_D": ("width", "Write width and diameter."),
@@ -58,6 +75,17 @@ KEYS_ELSEWHERE = {  # (the key that takes its place, in whose table alone it is 
     **dict.fromkeys(("grade", "vg"), ("viscosity", 'Write viscosity = "ISO VG 32", and temperature.')),
     "dynamic_viscosity": ("viscosity", 'Write viscosity = "12 mPa*s".'),
     "kinematic_viscosity": ("viscosity", 'Write viscosity = "12 cSt", and density.'),
+    **dict.fromkeys(("eta", "mu"), ("viscosity", 'Write viscosity = "12 mPa*s".')),
+    **dict.fromkeys(("sae", "iso", "iso_vg"), ("viscosity", 'Write viscosity = "ISO VG 32", and temperature.')),
+    "rho": ("density", "Write density."),
+    "weight": ("mass", "Write mass."),
+    "gap": ("clearance", "Write clearance."),
+    **dict.fromkeys(("play", "diametral_play"), ("clearance", "Write clearance, half of a diametral play{half}.")),
+    **dict.fromkeys(("D", "bore"), ("diameter", "Write diameter.")),
+    **dict.fromkeys(("B", "L"), ("width", "Write width.")),
+    **dict.fromkeys(("damping_ratio", "zeta"), ("shaft_damping", OF_RATIO)),
+    **dict.fromkeys(("fs", "sample_rate"), ("step", "Write step, the inverse of the rate.")),
+    "gravity": ("rotor", "Write gravity in [rotor]."),
     "eccentricity": ("unbalance", "Write unbalance, the mass times this eccentricity."),
     **dict.fromkeys(("max", "end"), ("to", "Write to.")),
     **dict.fromkeys(("min", "start"), ("from", "Write from.")),
@@ -143,21 +171,24 @@ def _breach(path: Path, loc: Sequence[str | int], kind: str, context: dict[str, 
     if kind in ("union_tag_invalid", "union_tag_not_found"):
         problem = MISSING if kind == "union_tag_not_found" else UNKNOWN
         tag = str(context.get("tag", ""))
-        known = KINDS_ELSEWHERE if path[:1] == ("bearing",) else {}
-        elsewhere = next((words for part, words in known.items() if part in tag.lower()), "")
-        return Breach((*path, "kind"), problem, elsewhere or did_you_mean(tag, _kinds(loc)))
+        return Breach((*path, "kind"), problem, _elsewhere(path[:1], tag) or did_you_mean(tag, _kinds(loc)))
     if kind == "literal_error":
         given = str(context["input"])
-        remedy = did_you_mean(given, _choices(_place(loc).field))
-        if path[-1] == CAVITATION[-1] and given.lower() in LAWS_ELSEWHERE:
-            remedy = LAWS_ELSEWHERE[given.lower()]
-        elif path == CAVITATION:
+        elsewhere = _elsewhere(path[-1:], given)
+        remedy = elsewhere or did_you_mean(given, _choices(_place(loc).field))
+        if path == CAVITATION and not elsewhere:
             remedy += " A law of your own is added in this process before the case is read: frbcli.add_law."
         return Breach(path, UNKNOWN, remedy)
     field = _place(loc).field
     if kind == "tuple_type" and field is not None and _parts(field.annotation, Model):
         kind = "model_type"
     return Breach(path, *_FORMS.get(kind, ("has the wrong form.", "`frb schema` prints what a case holds.")))
+
+
+def _elsewhere(key: Path, given: str) -> str:
+    """What takes the place of a value of a key, or of the kind of a table; empty if it is not known."""
+    known = VALUES_ELSEWHERE.get(str(key[0]), {}) if key else {}
+    return next((words for part, words in known.items() if part in given.lower()), "")
 
 
 def _place(loc: Sequence[str | int]) -> _Place:
