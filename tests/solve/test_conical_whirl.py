@@ -12,7 +12,7 @@ from marches import rigid_shaft
 import frbcli
 from frbcli.case.schema import Case
 from frbcli.linear.stability_point import Threshold
-from frbcli.scene.forms.tilted import TiltedForm
+from frbcli.scene.tilted import TiltedForm
 
 LENGTH, SPAN = 60e-3, 8e-3
 DISK = (

@@ -19,11 +19,11 @@ from frbcli.rotor.assembly import PLANE
 from frbcli.rotor.loads import SpeedProfile, speed_profile
 from frbcli.runs.films import tilt_signals
 from frbcli.runs.start import rotor_data, state_at
-from frbcli.scene.forms.tilted import TiltedForm
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.cell_choice import worst_film
 from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.tilted import TiltedForm
 from frbcli.solve.state import METHODS, RUNNING, SOLVES, STEPS, Control, make_output
 from frbcli.solve.time_loop import advance
 from frbcli.studies.accuracy import ladder, planned_rung
