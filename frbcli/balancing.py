@@ -24,13 +24,12 @@ from frbcli.analysis.measured import MEASURED
 from frbcli.analysis.order_tracking import FEWEST as LEAST_REVOLUTIONS
 from frbcli.analysis.order_tracking import MARK, REVOLUTIONS, STEPS, OrderTrack, order_track
 from frbcli.analysis.signals import RunLike, course, joined, points, signal_of
-from frbcli.arrays import Array, Complex, Truths
+from frbcli.arrays import Array, Complex, Truths, larger_semi_axis
 from frbcli.case.reading.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, Table, Tabular, spaced, speed_shown, table_of
 from frbcli.equilibrium.linearised import coefficients_of
 from frbcli.errors import NotConverged, did_you_mean, input_error
-from frbcli.linear.critical_speeds import larger_semi_axis
 from frbcli.linear.response import SOUND, Response, forced_motion, response
 from frbcli.results.records import TIME
 from frbcli.results.store import Run

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import signal
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from difflib import SequenceMatcher
+from typing import Self
 
 INTERRUPTED = 130  # exit code: 128 + SIGINT
 # Those that ask a process to end, so that it can keep what it has. Windows does not have the last one.
@@ -21,9 +22,15 @@ def printable(text: str) -> str:
 
 
 class FrbError(Exception):
-    """Base class. `exit_code` is what the command line ends with."""
+    """Base class. exit_code: what the command line ends with; status: the kind of the error in results."""
 
     exit_code = 1
+    status = "error"
+
+    @property
+    def document(self) -> dict[str, object]:
+        """The error in JSON."""
+        return {"status": self.status, "message": str(self)}
 
 
 @dataclass(frozen=True)
@@ -53,12 +60,22 @@ class InputError(FrbError):
     """The input is wrong. Carries every fault found, and names the first of them; nothing was run."""
 
     exit_code = 2
+    status = "input-error"
 
     def __init__(self, source: str, faults: tuple[Fault, ...]) -> None:
         self.source = source
         self.faults = faults
         more = f"\n  and {len(faults) - MOST_LISTED} more" if len(faults) > MOST_LISTED else ""
         super().__init__(source + "".join(f"\n  {fault}" for fault in faults[:MOST_LISTED]) + more)
+
+    def __reduce__(self) -> tuple[type[Self], tuple[str, tuple[Fault, ...]]]:
+        """For processes, which pass on how a run has ended."""
+        return type(self), (self.source, self.faults)
+
+    @property
+    def document(self) -> dict[str, object]:
+        """The error in JSON, fault by fault."""
+        return {"status": self.status, "source": self.source, "faults": [asdict(fault) for fault in self.faults]}
 
 
 def input_error(source: str, key: str, value: str, problem: str, remedy: str, line: int | None = None) -> InputError:
@@ -78,6 +95,7 @@ class NotConverged(FrbError):
     """A numerical method found no solution; says what was tried and what to change."""
 
     exit_code = 3
+    status = "not-converged"
 
 
 class FilmUnsolved(NotConverged):

@@ -12,7 +12,7 @@ import math
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeGuard
 
 if TYPE_CHECKING:
     import pint
@@ -128,6 +128,11 @@ class ValueFault(ValueError):
         super().__init__(f"{problem} {remedy}")
 
 
+def is_number(given: object) -> TypeGuard[int | float]:
+    """Whether a value is a number; True and False are none."""
+    return isinstance(given, int | float) and not isinstance(given, bool)
+
+
 def quantity(given: object, unit: str, example: str = "") -> float:
     """The SI value of `given`: a number, taken as SI, or text of a number and a unit such as "35 um".
 
@@ -137,7 +142,7 @@ def quantity(given: object, unit: str, example: str = "") -> float:
     Raises ValueFault for anything else than one finite quantity of this kind.
     """
     remedy = f'Write e.g. "{example}".' if example else f"Write a number in {readable(unit)}."
-    if isinstance(given, int | float) and not isinstance(given, bool):
+    if is_number(given):
         return _finite(given, remedy)
     if not isinstance(given, str):
         raise ValueFault("is not a quantity.", remedy)

@@ -28,6 +28,7 @@ from frbcli.case.model import (
     ThermalConductivity,
     Tilt,
     altered,
+    named,
     repeated,
 )
 from frbcli.case.oil import AnyWall, Material
@@ -281,19 +282,13 @@ def _numbered(given: object) -> object:
     # The one film of a symmetric rotor keeps the plain names of its signals next to elements.
     plain = in_film if len(in_film) == 1 and _key(in_film[0], "position") is None else []
     return [
-        bearing if any(bearing is one for one in plain) else _named(bearing, str(number))
+        bearing if any(bearing is one for one in plain) else named(bearing, str(number))
         for number, bearing in enumerate(given, start=1)
     ]
 
 
 def _key(bearing: object, key: str) -> object:
     return bearing.get(key) if isinstance(bearing, dict) else getattr(bearing, key, None)
-
-
-def _named(bearing: object, name: str) -> object:
-    if isinstance(bearing, dict):
-        return {"name": name, **bearing}
-    return altered(bearing, {"name": name}) if isinstance(bearing, Model) and not _key(bearing, "name") else bearing
 
 
 Bearings = Annotated[tuple[Bearing, ...], BeforeValidator(_numbered), repeated(1), ONE_OR_MANY]

@@ -37,10 +37,12 @@ from frbcli.case.model import (
     SignedSpeed,
     TopSpeed,
     form_of,
+    named,
 )
 from frbcli.case.over_time import Input, OverTime, is_over_time
 from frbcli.case.surroundings import Damper, Support
 from frbcli.materials import ROLLING, Elastic
+from frbcli.units import is_number
 
 Entry = Annotated[float, Quantity("N/m", "1e6 N/m")]
 DampingEntry = Annotated[float, Quantity("N*s/m", "1e3 N*s/m")]
@@ -52,7 +54,7 @@ AxialForce = Annotated[float, AXIAL]
 
 def _both_directions(given: object) -> object:
     """One quantity, used for both directions, without cross-coupling."""
-    if isinstance(given, str | int | float) and not isinstance(given, bool):
+    if is_number(given) or isinstance(given, str):
         return [[given, 0.0], [0.0, given]]
     return given
 
@@ -255,8 +257,7 @@ class ThrustBearing(Model):
 def _numbered(given: object) -> object:
     """Several tables with their numbers as names, where they have none, for results carry the names."""
     if isinstance(given, list | tuple) and len(given) > 1:
-        return [{"name": str(number), **part} if isinstance(part, dict) else part
-                for number, part in enumerate(given, start=1)]  # fmt: skip
+        return [named(part, str(number)) for number, part in enumerate(given, start=1)]
     return given
 
 
@@ -286,3 +287,8 @@ class Axial(Model):
     load: AnyLoad = Field(
         description="on the rotor, towards larger positions; or `{at, load}`"
     )
+
+    @property
+    def changes(self) -> bool:
+        """Whether it is given over time."""
+        return isinstance(self.load, OverTime)

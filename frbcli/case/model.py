@@ -121,6 +121,17 @@ def altered(record: Record, values: Mapping[str, Any]) -> Record:
     return BaseModel.model_copy(record, update=values)
 
 
+def named(given: object, name: str) -> object:
+    """A table or a model with a name, unless it has one."""
+    match given:
+        case dict():
+            return {"name": name, **given}
+        case Model() if not getattr(given, "name", "is not named"):
+            return altered(given, {"name": name})
+        case _:
+            return given
+
+
 def with_default(table: dict[str, Any], key: str, source: str) -> dict[str, Any]:
     """A table with `key` taken from its key `source` if it has that one only."""
     return {**table, key: table[source]} if key not in table and source in table else table

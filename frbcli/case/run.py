@@ -73,6 +73,11 @@ class SpeedRamp(Model):
     speeds: tuple[Speed, ...] = Field(default=(), description="contents of points or `file`, written by runs")
 
     @property
+    def top(self) -> float:
+        """The highest of start and end, in Hz, without its sign."""
+        return max(abs(self.start), abs(self.end))
+
+    @property
     def course(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Times in s of the run-up with speeds in Hz, linear between them."""
         return (self.times, self.speeds) if self.times else ((0.0, self.duration), (self.start, self.end))

@@ -100,13 +100,13 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
 
 def _check_thrust(case: Case, listed: Sequence[ListedValue], everything: bool, terminal: Terminal) -> None:
     """What `frb thrust` models of a case of thrust bearings alone."""
-    from frbcli.linear.sheets.thrust_faults import require_sheet
+    from frbcli.scene.gate.static import require_thrust_sheet
     from frbcli.scene.planning.plan import thrust_plan
 
     if everything:
         terminal.table("values", ("key", "SI", "reads"), _values(listed))
     bare = _show_bare(listed, terminal)
-    require_sheet(case)
+    require_thrust_sheet(case)
     plan = thrust_plan(case)
     terminal.table("plan", ("choice", "value", "reason"), [(d.choice, d.value, d.reason) for d in plan])
     terminal.emit(_document(case, listed, bare, plan))
@@ -311,7 +311,7 @@ def _values(listed: Sequence[ListedValue]) -> Iterator[tuple[str, str, str]]:
         if holder != table:
             table = holder
             yield (f"[{holder}]" if holder else "", "", "")
-        yield (key, _in_si(value.value, value.unit), value.shown if value.unit else "")
+        yield (key, *value.cells)
 
 
 def _show(films: tuple[FilmOperation, ...], terminal: Terminal) -> None:
@@ -332,8 +332,3 @@ def _show(films: tuple[FilmOperation, ...], terminal: Terminal) -> None:
             f"Note: centrifugal growth of shaft and rings changes the gap {changes}. Runs "
             'include it with thermal.centrifugal_growth = "follows"; without it, add it to the clearance if needed.'
         )
-
-
-def _in_si(value: float | int | str, unit: str) -> str:
-    number = f"{value:.6g}" if isinstance(value, float) else str(value)
-    return f"{number} {unit}".rstrip()

@@ -17,7 +17,7 @@ import click
 
 from frbcli import __version__
 from frbcli.cli.process import require_memory, reserve, shortage
-from frbcli.errors import INTERRUPTED, FrbError, InputError, NotConverged, input_error, printable
+from frbcli.errors import INTERRUPTED, FrbError, InputError, input_error, printable
 
 # name: (module of the command, with its name there where a module has several; one line of help; an example);
 # the module is imported when its command is called
@@ -282,13 +282,5 @@ def _emit_error(arguments: Sequence[str], error: FrbError) -> None:
         return
     from frbcli.cli.common import Terminal
 
-    document: dict[str, object] = {"command": next((word for word in arguments if word in COMMANDS), None)}
-    if isinstance(error, InputError):
-        faults = [
-            {"key": f.key, "value": f.value, "line": f.line, "problem": f.problem, "remedy": f.remedy}
-            for f in error.faults
-        ]
-        document |= {"status": "input-error", "source": error.source, "faults": faults}
-    else:
-        document |= {"status": "not-converged" if isinstance(error, NotConverged) else "error", "message": str(error)}
-    Terminal(json=True).emit(document)
+    command = next((word for word in arguments if word in COMMANDS), None)
+    Terminal(json=True).emit({"command": command, **error.document})

@@ -81,14 +81,16 @@ class PadHeat:
         nodes = [(1.0, thermal.start_temperature or largest(thermal.supply_temperature))]  # heat capacity, temperature
         links: list[tuple[int, int, float]] = []
         for wall in (thermal.shaft, thermal.housing):
-            if isinstance(wall, str):  # adiabatic
-                continue
-            links.append((0, len(nodes), transfer))
-            if isinstance(wall, WallNode):
-                nodes += [(wall.capacity, largest(wall.temperature)), (math.inf, largest(wall.temperature))]
-                links.append((len(nodes) - 2, len(nodes) - 1, wall.conductance))
-            else:
-                nodes.append((math.inf, largest(wall)))
+            film = 0, len(nodes), transfer
+            match wall:
+                case str():  # adiabatic
+                    continue
+                case WallNode():
+                    nodes += [(wall.capacity, largest(wall.temperature)), (math.inf, largest(wall.temperature))]
+                    links += [film, (len(nodes) - 2, len(nodes) - 1, wall.conductance)]
+                case _:
+                    nodes.append((math.inf, largest(wall)))
+                    links.append(film)
         first, last = (oil.density * oil.heat_capacity_at(at) for at in OIL_AT)
         slope, law = (last - first) / (OIL_AT[1] - OIL_AT[0]), oil.law
         assert law is not None  # the checks of a case see to it
@@ -157,6 +159,17 @@ class _Side:
     viscosity: float
 
 
+def _load(load: AnyLoad, speed: float, t: float | None) -> float:
+    """An axial load in N at a speed in Hz and a time in s; the largest one of a table over time without a time."""
+    match load:
+        case LoadAtSpeed():
+            return load.over(speed)
+        case OverTime() if t is not None:
+            return float(np.interp(t, load.time, load.x))
+        case _:
+            return largest(load)
+
+
 @dataclass(frozen=True)
 class Collar:
     """A collar with its pads, oil and load. course: times in s and speeds in Hz of the case, () without; viscosity in
@@ -199,12 +212,10 @@ class Collar:
     def load_at(self, omega: float) -> float:
         """The load in N at a speed in rad/s; of a table over time that at the time at which the run has the speed."""
         speed = omega / (2.0 * math.pi)
-        if isinstance(self.load, LoadAtSpeed):
-            return self.load.over(speed)
-        if isinstance(self.load, OverTime) and self.course:
-            times, speeds = self.course
-            return float(np.interp(np.interp(speed, speeds, times), self.load.time, self.load.x))
-        return largest(self.load)
+        if not self.course:
+            return _load(self.load, speed, None)
+        times, speeds = self.course
+        return _load(self.load, speed, float(np.interp(speed, speeds, times)))
 
     def films(self, gap: float) -> ScaledPads:
         """The films of one side at a gap in m, at the nearest gap of the table."""
@@ -413,11 +424,7 @@ class AxialMotion:
 
     def load(self, t: float) -> float:
         """The load in N at a time in s, towards larger positions."""
-        load = self.collar.load
-        if isinstance(load, OverTime):
-            return float(np.interp(t, load.time, load.x))
-        speed = float(self.profile.speed(np.array([t]))[0]) / (2.0 * math.pi)
-        return load.over(speed) if isinstance(load, LoadAtSpeed) else load
+        return _load(self.collar.load, float(self.profile.speed(np.array([t]))[0]) / (2.0 * math.pi), t)
 
     def _viscosity(self, side: float, t: float, omega: float) -> float:
         """Viscosity of the oil on a side in Pa s, with heat the one of a collar that rests at this speed."""

@@ -20,13 +20,13 @@ from frbcli.film.grid import Mesh
 from frbcli.film.kinds.contract import EvenFilm, FieldFilm
 from frbcli.rotor.assembly import LinearRotor, Link, assembled, point_mass
 from frbcli.scene.films import film_places, volume_film
-from frbcli.scene.forms.form import FilmForm
-from frbcli.scene.forms.tilted import CELLS as ON_CELLS
+from frbcli.scene.forms import FilmForm
 from frbcli.scene.gate.rule import STILL
 from frbcli.scene.machine.heat import warm_case, warm_system
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.film_choice import DEFAULT_MESH, Plan, choose_films, form_of
 from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.tilted import CELLS as ON_CELLS
 
 CELLS = (144, 20)  # around and along a section, equal: 0.1 % of the force up to an eccentricity of 0.9
 # How far coefficients are off is not even from mesh to mesh as edges of cavities cross cells, so that one coarser mesh

@@ -165,7 +165,7 @@ def balance_quality(case: Case, grade: str | float, speed_Hz: float | None = Non
     require(case)
     try:
         grade_mm_s = read_grade(grade)
-        speed = max(map(abs, (case.speed.start, case.speed.end))) if speed_Hz is None else quantity(speed_Hz, SPEED)
+        speed = case.speed.top if speed_Hz is None else quantity(speed_Hz, SPEED)
     except ValueFault as fault:
         raise input_error(case.name or "case", "grade", str(grade), fault.problem, fault.remedy) from None
     if not speed > 0.0:

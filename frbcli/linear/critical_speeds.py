@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.analysis.spectrum import prominent_peaks
-from frbcli.arrays import Array, Complex
+from frbcli.arrays import Array, Complex, larger_semi_axis
 from frbcli.case.schema import Case
 from frbcli.equilibrium.hopf import oscillating
 from frbcli.equilibrium.linearised import coefficients_of, small_motions
@@ -51,13 +51,6 @@ REACH = 3.0  # half widths: a bump that is further from a pole is not its peak
 PROMINENT, NOTICED = 0.01, 1e-4  # prominence of a peak over its height, and over the largest amplitude
 
 Load = Callable[[float], tuple[float, Complex]]
-
-
-def larger_semi_axis(motion: Complex) -> Array:
-    """(...) of the ellipse that x and y with the complex amplitudes (..., 2) draw: its forward and its backward part
-    added up."""
-    x, y = motion[..., 0], motion[..., 1]
-    return np.asarray(0.5 * (np.abs(x + 1j * y) + np.abs(x - 1j * y)))
 
 
 def whirl_direction(motion: Complex) -> str:
@@ -307,7 +300,7 @@ def linear_critical_speeds(case: Case) -> tuple[float, ...] | None:
     known: for floating rings, whose films whirl from low speeds on, and where no static equilibrium is found."""
     if rings(case):
         return None
-    top = ABOVE * max(abs(case.speed.start), abs(case.speed.end))
+    top = ABOVE * case.speed.top
     try:
         machines = StaticMachines(full_films(case), coarse=True)
     except FrbError:  # an opening that this film does not know

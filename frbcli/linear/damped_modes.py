@@ -24,7 +24,7 @@ from operator import attrgetter
 
 import numpy as np
 
-from frbcli.arrays import Array, Complex
+from frbcli.arrays import Array, Complex, larger_semi_axis
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, Table, Tabular, spaced, speed_shown, table_of
 from frbcli.equilibrium.hopf import oscillating
@@ -32,7 +32,7 @@ from frbcli.equilibrium.linearised import coefficients_of, eigenpairs
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import NotConverged, input_error
 from frbcli.linear.columns import DAMPED_MODES
-from frbcli.linear.critical_speeds import CriticalSpeed, larger_semi_axis, whirl_direction
+from frbcli.linear.critical_speeds import CriticalSpeed, whirl_direction
 from frbcli.linear.response import Response
 from frbcli.linear.stability import check_machine
 from frbcli.linear.stability_point import machine_rotor, point_at_rest, with_errors

@@ -389,7 +389,7 @@ def critical_map(
 
 
 def _default(case: Case) -> Array:
-    top = 2.0 * math.pi * max(abs(case.speed.start), abs(case.speed.end), 1.0)
+    top = 2.0 * math.pi * max(case.speed.top, 1.0)
     usual = (findings(case).mass or 1.0) * top**2 / 2.0
     return np.asarray(usual * np.logspace(*DECADES, STIFFNESSES), dtype=np.float64)
 

@@ -24,7 +24,7 @@ from operator import attrgetter
 
 import numpy as np
 
-from frbcli.arrays import Array, Complex, Truths
+from frbcli.arrays import Array, Complex, Truths, larger_semi_axis
 from frbcli.case.schema import Case
 from frbcli.columns import Table, Tabular, spread_table
 from frbcli.equilibrium.linearised import LEAST, coefficients_of, linearised
@@ -38,7 +38,6 @@ from frbcli.linear.critical_speeds import (
     ResponsePeak,
     SpeedModel,
     amplification_factor,
-    larger_semi_axis,
     moved,
     peaks,
     separation_margin,
@@ -292,7 +291,7 @@ def _response(
         resting=tuple(resting),
         in_films=np.array(journals) / clearances[:, :, None],
         clearances=clearances,
-        amplitude_error=_amplitude_error(motion, _on_others(rotors, resting, excitation)),
+        amplitude_error=_amplitude_error(motion, rotors, resting, excitation),
         excitation=excitation,
     )
 
@@ -455,28 +454,17 @@ def _at(
     return np.array([place @ q for _, place in rotor.points]), forces, journals[:, :2]
 
 
-def _on_others(
-    rotors: Sequence[LinearRotor], points: Sequence[StabilityPoint], excitation: str
-) -> list[tuple[Complex, float]]:
-    """The motion (n, p, 2) of the points of a rotor, as it is at each speed, on each other mesh of its films, with the
-    share of the difference that is the error; none where a mesh is missing at a speed."""
-    if len({len(point.others) for point in points}) > 1:
-        return []
-    results = []
-    for number in range(len(points[0].others)):
-        motion = []
+def _amplitude_error(
+    motion: Complex, rotors: Sequence[LinearRotor], points: Sequence[StabilityPoint], excitation: str
+) -> Array:
+    """(n, p) in m: the largest difference of the amplitudes (n, p, 2) from those on the other meshes of the films times
+    their shares, at least LEAST; rotors: as they are at each speed; NaN where a mesh is missing at a speed."""
+    own, apart = larger_semi_axis(motion), []
+    for number, share in _shares(points):
+        other = []
         for rotor, point in zip(rotors, points, strict=True):
             omega = 2.0 * math.pi * point.speed_Hz
             q = forced_motion(rotor, omega, excited(rotor, omega, excitation), *point.others[number][:2])
-            motion.append([place @ q for _, place in rotor.points])
-        results.append((np.array(motion), points[0].others[number][2]))
-    return results
-
-
-def _amplitude_error(motion: Complex, others: Sequence[tuple[Complex, float]]) -> Array:
-    """(n, p) in m: the largest difference of the amplitudes on other meshes times their shares, at least LEAST."""
-    own = larger_semi_axis(motion)
-    if not others:
-        return np.full(own.shape, math.nan)
-    apart = [share * np.abs(larger_semi_axis(other) - own) for other, share in others]
-    return np.asarray(np.maximum(LEAST * own, np.max(apart, axis=0)))
+            other.append([place @ q for _, place in rotor.points])
+        apart.append(share * np.abs(larger_semi_axis(np.array(other)) - own))
+    return np.maximum(LEAST * own, np.max(apart, axis=0)) if apart else np.full(own.shape, math.nan)

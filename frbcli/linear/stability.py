@@ -103,7 +103,15 @@ def stability(
     """
     require(case, RANGE if speeds_Hz is None else FILMS)
     asked = default_speeds(case) if speeds_Hz is None else tuple(float(speed) for speed in speeds_Hz)
-    return _stability(case, asked, observe, threshold or speeds_Hz is None)
+    threshold = threshold or speeds_Hz is None
+    _check_speeds(case, asked)
+    speeds = sorted(set(default_speeds(case) if threshold else ()) | set(asked))
+    check_machine(case, speeds)
+    machines = StaticMachines(case, memory=True)
+    sweep = _sweep(case, machines, speeds, observe)
+    by_speed = {point.speed_Hz: point for point in sweep}
+    found, note = find_threshold(case, machines, sweep) if threshold else (None, NOT_SOUGHT)
+    return Stability(case, tuple(by_speed[speed] for speed in asked), sweep, found, note)
 
 
 def threshold_alone(case: Case) -> Stability:
@@ -154,19 +162,6 @@ def open_spans(points: Sequence[StabilityPoint]) -> list[tuple[float, float]]:
     highest = [i for i in range(first + 1) if i == first or growth[i] >= max(growth[max(i - 1, 0)], growth[i + 1])]
     above = [i if growth[i] > 0.0 else min(i + 1, last) for i in highest]
     return [(points[max(i - 1, 0)].speed_Hz, points[j].speed_Hz) for i, j in zip(highest, above, strict=True)]
-
-
-def _stability(
-    case: Case, asked: Sequence[float], observe: Callable[[int, int], None] | None, with_threshold: bool
-) -> Stability:
-    _check_speeds(case, asked)
-    speeds = sorted(set(default_speeds(case) if with_threshold else ()) | set(asked))
-    check_machine(case, speeds)
-    machines = StaticMachines(case, memory=True)
-    sweep = _sweep(case, machines, speeds, observe)
-    by_speed = {point.speed_Hz: point for point in sweep}
-    threshold, note = find_threshold(case, machines, sweep) if with_threshold else (None, NOT_SOUGHT)
-    return Stability(case, tuple(by_speed[speed] for speed in asked), sweep, threshold, note)
 
 
 def stability_points(

@@ -26,7 +26,7 @@ from frbcli.arrays import Array
 from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case_text
 from frbcli.case.run import speed_unit_of
-from frbcli.errors import FrbError, InputError, input_error, printable
+from frbcli.errors import FrbError, input_error, printable
 from frbcli.plot import style as plot_style
 from frbcli.plot.motion import SUBJECTS, displacement_figure, eccentricity_figure, quantity_figure
 from frbcli.plot.signals import bearing_of, clearance, ends, events, heading
@@ -314,7 +314,7 @@ def _machine(run: Run) -> dict[str, Any]:
         "films": [(name.replace("_", " "), Markup(drawing)) for name, drawing in film_sketches(case)],
         "mass": _mass(static),
         "loads": [_load(each) for each in static.films],
-        "values": [_value(each) for each in values(case)],
+        "values": [(each.key, *each.cells) for each in values(case)],
         "plan": [(each.choice, each.value, each.reason) for each in plan.decisions],
     }
 
@@ -330,11 +330,6 @@ def _mass(static: Findings) -> str:
 def _load(film: Any) -> tuple[str, ...]:
     number = "-" if np.isnan(film.sommerfeld_number) else f"{film.sommerfeld_number:.3g}"
     return (film.film or "film", f"{film.load:.4g}", f"{1e-5 * film.mean_pressure:.3g}", number, film.supply)
-
-
-def _value(value: Any) -> tuple[str, str, str]:
-    number = f"{value.value:.6g}" if isinstance(value.value, float) else printable(str(value.value))
-    return value.key, f"{number} {value.unit}".rstrip(), value.shown if value.unit else ""
 
 
 def _today() -> str:
@@ -410,7 +405,8 @@ def _moments(run: Run, speeds_Hz: Sequence[float], marked: Sequence[dict[str, An
         times = times_of_speeds(run, speeds_Hz)
         if len(times) < len(speeds_Hz):
             fastest = float(np.max(np.abs(run[SPEED])))
-            raise _refuse("a speed is asked for that the run does not reach.", f"It turns with up to {fastest:.4g} Hz.")
+            problem = "a speed is asked for that the run does not reach."
+            raise input_error("report", "output", "", problem, f"It turns with up to {fastest:.4g} Hz.")
         return times
     kinds = dict[str, float]()
     for event in marked:
@@ -427,7 +423,3 @@ def _commands(run: Run) -> str:
 def _text(environment: Environment, name: str) -> str:
     assert environment.loader is not None
     return environment.loader.get_source(environment, name)[0]
-
-
-def _refuse(problem: str, remedy: str) -> InputError:
-    return input_error("report", "output", "", problem, remedy)

@@ -31,6 +31,7 @@ from frbcli.arrays import Array
 from frbcli.columns import Column
 from frbcli.results.columns import MACHINE_SIGNALS, PART_SIGNALS
 from frbcli.results.container import refuse
+from frbcli.units import is_number
 
 IN_MEMORY = 64 * 1024**2  # bytes of all signals of a run that stay in memory
 
@@ -374,18 +375,13 @@ def _is_reference(name: str, value: Any) -> bool:
 
 def _is_event(record: Any) -> bool:
     return (
-        isinstance(record, dict)
-        and len(record) <= MOST_ENTRIES
+        _is_table(record, lambda _, value: value in (None, True, False) or _is_number(value) or _is_label(value))
         and all(name in record for name in EVENT_KEYS)
-        and isinstance(record["kind"], str)
+        and _is_label(record["kind"])
         and _KIND.fullmatch(record["kind"]) is not None
         and all(_is_finite(record[name]) for name in EVENT_NUMBERS)
         and all(record[name] is None or _is_finite(record[name]) for name in EVENT_OPTIONAL)
         and (record["film"] is None or _is_label(record["film"]))
-        and all(
-            value is None or isinstance(value, bool) or _is_number(value) or _is_label(value)
-            for value in record.values()
-        )
     )
 
 
@@ -395,9 +391,7 @@ def _is_label(value: Any) -> bool:
 
 def _is_number(value: Any) -> bool:
     """Whether a cost or an error can have this value. NaN and infinities are unknown; counts fit a processor."""
-    return isinstance(value, float) or (
-        isinstance(value, int) and not isinstance(value, bool) and value.bit_length() < LONGEST_COUNT
-    )
+    return is_number(value) and (isinstance(value, float) or value.bit_length() < LONGEST_COUNT)
 
 
 def _is_finite(value: Any) -> bool:

@@ -38,11 +38,11 @@ from frbcli.runs.march import March, Progress
 from frbcli.scene.cost import clock
 from frbcli.scene.course import ERROR_ORDERS
 from frbcli.scene.films import film_places
-from frbcli.scene.forms.tilted import FRONT_ORDER, cells_of
 from frbcli.scene.machine.system import System
 from frbcli.scene.machine.turbocharger import shaft_of
 from frbcli.scene.planning.cell_choice import worst_film
 from frbcli.scene.planning.plan import LOOSER, Trial, coarser_plan
+from frbcli.scene.tilted import FRONT_ORDER, cells_of
 from frbcli.solve.state import CONTACT, FINISHED, RUNNING, STANDSTILL
 from frbcli.units import HERTZ, SpeedUnit
 

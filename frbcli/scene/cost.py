@@ -28,7 +28,7 @@ from frbcli.rotor.reduction import DENSE, MOST
 from frbcli.scene.changes import step_times
 from frbcli.scene.course import STAGES, RunCourse, expected_course, runs_nearly_dry, whirl_speed
 from frbcli.scene.films import film_places, full_films, rings, turning_rings
-from frbcli.scene.forms.form import TABLE, FilmForm
+from frbcli.scene.forms import TABLE, FilmForm
 from frbcli.scene.machine.rotor import changes_with_speed, element_parts
 from frbcli.scene.machine.turbocharger import shaft_of
 from frbcli.scene.planning.film_choice import Plan, form_of

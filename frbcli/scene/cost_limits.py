@@ -95,5 +95,4 @@ def _by_machine(case: Case) -> Iterator[_Limited]:
 def _by_speed(case: Case) -> Iterator[_Limited]:
     speed = case.speed
     yield _Limited(speed.duration / 100.0, "speed.duration", f"{speed.duration:g} s", "Shorten the run.")
-    fastest = max(abs(speed.start), abs(speed.end))
-    yield _Limited(fastest / 1e4, "speed.to", f"{fastest:g} Hz", "Lower the speed, or shorten the run.")
+    yield _Limited(speed.top / 1e4, "speed.to", f"{speed.top:g} Hz", "Lower the speed, or shorten the run.")

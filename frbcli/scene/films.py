@@ -460,7 +460,7 @@ def volume_film(
     if (law_class.closed or only_out) and geometry.ends == "free-to-air":
         section = ends_at_ambient(section)
     law = make_law(case, cavitation, section)
-    top = max(abs(case.speed.start), abs(case.speed.end)) if top_Hz is None else top_Hz
+    top = case.speed.top if top_Hz is None else top_Hz
     speed = 2.0 * math.pi * max(top, 1.0)
     reference = PUMPED * 0.5 * speed / section.aspect
     return VolumeFilm(section, run_grid(section, cells), law, reference, edged)

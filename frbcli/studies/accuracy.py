@@ -86,7 +86,7 @@ class RungError:
 class RungResult:
     """A run on a rung. cpu_s: to tabulate its films and to march; status: how it ended; planned: the choice
     of the plan; signals: largest error of each signal, see Difference; stated: stated error of the run;
-    work_s: CPU time from the number of its film solves and the times of scene/forms/, which does not depend on the
+    work_s: CPU time from the number of its film solves and the times of scene/forms.py, which does not depend on the
     load of the machine."""
 
     rung: Rung

@@ -195,8 +195,7 @@ def side_by_side(tasks: Sequence[RunTask], report: Report) -> Iterator[tuple[int
             with joblib.parallel_config("loky", inner_max_num_threads=1), deaf():  # the processes start in it
                 run = joblib.Parallel(jobs, batch_size=1, pre_dispatch=jobs, return_as="generator_unordered")
                 all_ended = run(joblib.delayed(_in_process)(task, Path(name)) for task in tasks)
-            for number, ended in all_ended:
-                yield number, ended if not isinstance(ended, tuple) else ended[0](*ended[1:])
+            yield from all_ended
         except BrokenExecutor as death:
             raise NotConverged("The process of a run ended: it was killed, or there was too little memory.") from death
         finally:
@@ -216,8 +215,8 @@ def _listen(folder: Path, interrupt: Interrupt, over: Event, report: Report) -> 
                 report(*pickle.loads(said))
 
 
-def _in_process(task: RunTask, folder: Path) -> tuple[int, Any]:
-    """The number of a run and how it has ended; an InputError in its parts, since processes cannot pass it on."""
+def _in_process(task: RunTask, folder: Path) -> tuple[int, Ended]:
+    """The number of a run and how it has ended."""
     stop, file = folder / STOP, folder / f"{task.number}.progress"
 
     def report(number: int, progress: Progress) -> None:
@@ -229,9 +228,7 @@ def _in_process(task: RunTask, folder: Path) -> tuple[int, Any]:
 
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
-        ended = KeyboardInterrupt() if stop.exists() else _ended(task, report)
-        parts = (type(ended), ended.source, ended.faults) if isinstance(ended, InputError) else ended
-        return task.number, parts
+        return task.number, KeyboardInterrupt() if stop.exists() else _ended(task, report)
     finally:
         signal.signal(signal.SIGINT, before)
 

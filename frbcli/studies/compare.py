@@ -18,7 +18,7 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.columns import ZERO_CELSIUS, Column, Shown, Table, Tabular, table_of, uncertain_speed
-from frbcli.errors import Fault, InputError, NotConverged, did_you_mean, input_error
+from frbcli.errors import Fault, InputError, did_you_mean, input_error
 from frbcli.film.cavitation.table import law_named, laws, names
 from frbcli.results.columns import uncertain_pair
 from frbcli.results.store import Run, check_output
@@ -283,7 +283,7 @@ def compare(
     if 1 not in runs:
         raise failures[0]
     failures += [KeyboardInterrupt() for run in runs.values() if run.status == INTERRUPTED]
-    status, message = (_status(failures[0]), str(failures[0])) if failures else (FINISHED, "")
+    status, message = (getattr(failures[0], "status", INTERRUPTED), str(failures[0])) if failures else (FINISHED, "")
     results = [VariantResult(variants[number - 1], run, deviation(run, runs[1])) for number, run in runs.items()]
     return Comparison(case, test, tuple(results), status, message)
 
@@ -316,12 +316,6 @@ def _is_begun(test: str, case: Case, path: Path) -> bool:
         return earlier_run(test, case, path) is not None
     standing_run(test, case, path)
     return False
-
-
-def _status(end: BaseException) -> str:
-    if isinstance(end, KeyboardInterrupt):
-        return INTERRUPTED
-    return "not-converged" if isinstance(end, NotConverged) else "input-error"
 
 
 def make_variants(
@@ -368,15 +362,11 @@ def deviation(run: Run, reference: Run) -> Deviation:
     apart = np.array([run[name][:count] - reference[name][:count] for name in names])
     if count < 2:
         return Deviation(np.nan, np.nan, until)
-    return Deviation(float(np.abs(apart).max()), _rms(apart), until)
+    return Deviation(float(np.abs(apart).max()), float(np.sqrt(np.mean(apart**2))), until)
 
 
 def _last(run: Run, name: str) -> Array:
     return run[name][-max(1, round(LAST * len(run))) :]
-
-
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(values**2)))
 
 
 def _check_test(test: str) -> None:
@@ -409,9 +399,7 @@ def _with_models(case: Case, variant: Variant) -> Case:
 def _fits(case: Case, variant: Variant) -> bool:
     """Whether a run-up of the case can be made with the model: no short bearing with openings, for instance."""
     try:
-        its_case = _with_models(case, variant)
-        make_plan(its_case)
-        _check_own_models(case, variant, its_case)
+        _planned(case, variant)
     except InputError:
         return False
     return True

@@ -427,7 +427,7 @@ def scatter(swept: Sweep, below_Hz: float | None = None) -> Scatter:
         remedy = "The table gives the reason for each machine."
         raise input_error("sweep", "--set", "", "no machine has a result.", remedy)
     ordered = np.sort(speeds[known])
-    limit = max(abs(swept.case.speed.start), abs(swept.case.speed.end)) if below_Hz is None else below_Hz
+    limit = swept.case.speed.top if below_Hz is None else below_Hz
     share = float(np.mean(ordered < limit))
     places = np.minimum(np.ceil(0.01 * np.array(PERCENTS) * len(ordered)).astype(int), len(ordered)) - 1
     percentiles = tuple(zip(PERCENTS, ordered[places].tolist(), strict=True))

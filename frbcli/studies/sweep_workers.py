@@ -30,7 +30,7 @@ from frbcli.caches import is_trusted
 from frbcli.case.reading.load import describes
 from frbcli.case.schema import Case
 from frbcli.compiled import working_time
-from frbcli.errors import InputError, NotConverged
+from frbcli.errors import FrbError, InputError, NotConverged
 from frbcli.linear.stability import threshold_alone
 from frbcli.results.records import SPEED, WHOLE
 from frbcli.results.write import SWEEP_LOG, Unreadable, text_of, write
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 
 METHODS = ("runup", "stability")
 FINISHED, INTERRUPTED = "finished", "interrupted"
-INPUT_ERROR, NOT_CONVERGED, ERROR = "input-error", "not-converged", "error"
+INPUT_ERROR, NOT_CONVERGED, ERROR = InputError.status, NotConverged.status, FrbError.status
 UNDECIDED = (INPUT_ERROR, ERROR, INTERRUPTED)  # a sweep that goes on tries these again
 THRESHOLD, ONSET = "threshold", "onset"
 NO_WHIRL = "No whirl up to"  # begins a message
@@ -96,9 +96,9 @@ def solve(task: Task) -> SweepPoint:
     try:
         return _threshold(task) if task.method == "stability" else _run(task)
     except InputError as error:
-        return task.failed(INPUT_ERROR, one_line(error))
+        return task.failed(error.status, one_line(error))
     except NotConverged as error:
-        return task.failed(NOT_CONVERGED, str(error))
+        return task.failed(error.status, str(error))
     except Exception as error:
         return task.failed(ERROR, f"{type(error).__name__}: {error}")
 
@@ -113,8 +113,7 @@ def _run(task: Task) -> SweepPoint:
         run = runup(task.case, path, resume=True)
     message = "" if run.status in WHOLE else f"{run.status} at {run.t_end_s:.4g} s"
     if run.status in WHOLE and not any(event["kind"] == ONSET for event in run.events):
-        given = task.case.speed.start, task.case.speed.end
-        reached = max(map(abs, given)) if task.case.drive is None else float(run[SPEED].max())
+        reached = task.case.speed.top if task.case.drive is None else float(run[SPEED].max())
         message = f"{NO_WHIRL} {reached:.4g} Hz."
     point = SweepPoint(task.number, task.settings, run.status, message, tuple(run.events), run.cost)
     return replace(point, run=task.run)

@@ -114,8 +114,6 @@ def _run(case: Case) -> None:
         runup(moment_of_run(case), Path(folder) / "moment.h5")
 
 
-def _top_Hz(case: Case) -> float:
-    return max(abs(case.speed.start), abs(case.speed.end))
 
 
 def _kinematic(test: Callable[..., object]) -> Callable[[Case], object]:
@@ -124,8 +122,8 @@ def _kinematic(test: Callable[..., object]) -> Callable[[Case], object]:
 
 ANALYSES: dict[str, Callable[[Case], object]] = {
     RUN: _run,
-    STABILITY: lambda case: stability_points(case, [_top_Hz(case)]),
-    BEARING: lambda case: bearing_sheet(case, [_top_Hz(case)]),
+    STABILITY: lambda case: stability_points(case, [case.speed.top]),
+    BEARING: lambda case: bearing_sheet(case, [case.speed.top]),
     "rotation": kinematic.rotation,
     "squeeze": _kinematic(kinematic.squeeze),
     "whirl": _kinematic(kinematic.whirl),

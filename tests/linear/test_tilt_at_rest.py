@@ -24,13 +24,13 @@ from frbcli.linear.sheets.film_state import FilmState
 from frbcli.linear.stability import stability_points
 from frbcli.linear.stability_point import StabilityPoint
 from frbcli.rotor.assembly import COORDINATES
-from frbcli.scene.forms.tilted import TiltedForm
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import RUN, STILL
 from frbcli.scene.machine.heat import warm_case
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.tilted import TiltedForm
 
 FEW = ((24, 8), (16, 6))
 

@@ -27,12 +27,12 @@ from frbcli.linear.stability import stability_points
 from frbcli.rotor.assembly import COORDINATES, PLANE, without_spins
 from frbcli.rotor.loads import speed_profile
 from frbcli.runs.start import state_at
-from frbcli.scene.forms.tilted import TiltedForm
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import SPEED_CYCLES
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.system import System
 from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.tilted import TiltedForm
 from frbcli.solve.state import STEPS, Control
 
 Array = np.ndarray

@@ -16,8 +16,7 @@ from frbcli.runs.header import header
 from frbcli.runs.run import runup
 from frbcli.scene.cost import expected_cost, signal_count
 from frbcli.scene.course import STAGES, whirl_speed
-from frbcli.scene.forms.form import CHAINS, CLOSED_FORM, FIELDS, TABLE
-from frbcli.scene.forms.tilted import CELLS, TiltedForm
+from frbcli.scene.forms import CHAINS, CLOSED_FORM, FIELDS, TABLE
 from frbcli.scene.machine.system import make_segments
 from frbcli.scene.planning.cell_choice import (
     ALONG,
@@ -34,6 +33,7 @@ from frbcli.scene.planning.cell_choice import (
 )
 from frbcli.scene.planning.film_choice import Plan, choose_films
 from frbcli.scene.planning.plan import CELL_SHARE, TIGHT_SHARE, expected_error, make_plan
+from frbcli.scene.tilted import CELLS, TiltedForm
 from frbcli.solve.state import METHODS
 
 WITHIN = 2.0  # of the real cost

@@ -20,10 +20,10 @@ from frbcli.cycles.shooting.shots import Rest, Shooting
 from frbcli.linear.stability import stability_points
 from frbcli.linear.stability_point import Threshold
 from frbcli.rotor.assembly import PLANE
-from frbcli.scene.forms.tilted import TiltedForm
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import CYCLES, SPEED_CYCLES, WHIRLS
 from frbcli.scene.machine.rotor import make_rotor
+from frbcli.scene.tilted import TiltedForm
 
 MESH = "accuracy.mesh=[4, 24]"  # 24 x 8 cells over the whole width
 COARSE = "accuracy.mesh=[2, 16]", ((16, 4), (12, 2))  # and those of machines at rest

@@ -18,11 +18,11 @@ from frbcli.linear.stability import stability_points
 from frbcli.rotor.assembly import PLANE
 from frbcli.rotor.loads import speed_profile
 from frbcli.runs.films import tilt_signals
-from frbcli.scene.forms.tilted import TiltedForm
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.system import System
 from frbcli.scene.planning.cell_choice import worst_film
 from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.tilted import TiltedForm
 from frbcli.solve.state import SOLVES, STEPS, Control
 from frbcli.studies.accuracy import ladder, planned_rung
 

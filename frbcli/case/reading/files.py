@@ -27,6 +27,7 @@ from frbcli.case.reading.tables import Path as Key
 from frbcli.case.rotor import OF_SECTIONS
 from frbcli.results.write import NoFile, NoText, Unreadable
 from frbcli.results.write import text_of as text_of_file
+from frbcli.units import is_number
 
 LARGEST_FILE = 4_194_304  # bytes
 SI = "Correct it; values are in SI units."
@@ -45,8 +46,8 @@ def with_file(
     """The tables of a case with what the file of one of them holds instead of its key `file`, and the fault, with which
     it keeps the key. joined: that table by the name of the file and the other keys, may raise Refused; excluded: keys
     that the file replaces; remedy: where one of them is given, too."""
-    given = at(data, path)
-    name, key = given.get("file") if isinstance(given, dict) else None, (*path, "file")
+    key = (*path, "file")
+    given, name = at(data, path), at(data, key)
     if not isinstance(name, str) or not name:
         return data, []
     if both := [other for other in excluded if other in given]:
@@ -92,7 +93,7 @@ def number_table(text: str, names_remedy: str) -> Columns:
 def finite(given: object, name: str, row: int) -> float:
     """A finite number that a case would take. Raises Refused."""
     try:
-        if isinstance(given, bool) or not isinstance(given, str | int | float):
+        if not (is_number(given) or isinstance(given, str)):
             raise ValueError
         value = float(given)
     except (ValueError, OverflowError):

@@ -11,9 +11,10 @@ from pydantic.fields import FieldInfo
 
 from frbcli.case.model import Model, unit_of
 from frbcli.case.reading.settings import parse
+from frbcli.case.reading.tables import at
 from frbcli.case.rules.film_checks import OF_SPRING, WITH_DEFAULT
 from frbcli.case.schema import Case
-from frbcli.errors import Fault
+from frbcli.errors import Fault, printable
 from frbcli.film.cavitation import table
 from frbcli.units import NUMBER, PER_MINUTE, SPEED, display, is_per_minute, readable
 
@@ -31,6 +32,12 @@ class Value:
     shown: str = ""
     bare: bool = False
 
+    @property
+    def cells(self) -> tuple[str, str]:
+        """The value in SI, and as engineers write it where it has a unit."""
+        number = f"{self.value:.6g}" if isinstance(self.value, float) else printable(str(self.value))
+        return f"{number} {self.unit}".rstrip(), self.shown if self.unit else ""
+
 
 def values(case: Case) -> tuple[Value, ...]:
     """Every value of `case` that is set, by itself or by default, in the order of the case file."""
@@ -40,8 +47,7 @@ def values(case: Case) -> tuple[Value, ...]:
 def _values(prefix: str, model: Model, written: Any) -> Iterator[Value]:
     for name, field in type(model).model_fields.items():
         key = field.alias or name
-        here = written.get(key) if isinstance(written, dict) else None
-        yield from _one(f"{prefix}{key}", getattr(model, name), field, here)
+        yield from _one(f"{prefix}{key}", getattr(model, name), field, at(written, (key,)))
 
 
 def _one(key: str, content: Any, field: FieldInfo, written: Any) -> Iterator[Value]:

@@ -30,9 +30,9 @@ from frbcli.arrays import Array
 from frbcli.case.elements import AXES
 from frbcli.case.model import DampingRate, DampingTime, Density, Inertia, InnerDiameter, Length, Mass, Modulus
 from frbcli.case.reading.files import Refused, ross_tables, text_of
-from frbcli.case.reading.tables import Breach, table, tables
+from frbcli.case.reading.tables import Breach, at, table, tables
 from frbcli.case.rotor import OF_SECTIONS
-from frbcli.units import ValueFault
+from frbcli.units import ValueFault, is_number
 
 SHAFT = ("ShaftElement", "ShaftElement6DoF")
 # What a case file demands of the same quantities.
@@ -54,7 +54,7 @@ class RossElement:
     def number(self, key: str, default: float | None = None) -> float:
         """A finite number, and of what a case file has a quantity for, one that it would take. Raises Refused."""
         number = self.values.get(key, default)
-        if isinstance(number, bool) or not isinstance(number, int | float):
+        if not is_number(number):
             raise Refused(f'lacks a number "{key}" in "{self.name}".', WRITE)
         try:
             value = float(number)
@@ -136,7 +136,7 @@ def with_rotor_file(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any],
     own = data.get("disk", [])
     if isinstance(own, list):
         known = {disk["name"]: disk for disk in disks}
-        named = [disk.get("name") if isinstance(disk, dict) else None for disk in own]
+        named = [at(disk, ("name",)) for disk in own]
         completed = [
             {**known[called], **disk} if isinstance(called, str) and called in known else disk
             for disk, called in zip(own, named, strict=True)

@@ -5,8 +5,9 @@ The lines of the keys, which the parser of TOML does not report and faults need,
 
 from __future__ import annotations
 
+import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,8 +15,13 @@ from frbcli.units import ValueFault, quantity
 
 Path = tuple[str | int, ...]
 
-_BARE_END = " \t\r\n=.]}#,"
-_VALUE_END = ",]}#\n"
+# The tokens of TOML but for blanks and comments; the end of a line closes a value.
+_TOKEN = re.compile(
+    r'''("{3}(?:\\.|[^\\])*?"{3,5}|'{3}.*?'{3,5}|"(?:\\.|[^"\\])*"|'[^']*'|'''  # texts
+    r'''[][{}=.,\n]|[^][{}=.,\n \t\r#"']+)|#[^\n]*''',
+    re.DOTALL,
+)
+_VALUE_END = ("", ",", "]", "}", "\n")
 
 
 def key_lines(text: str) -> dict[Path, int]:
@@ -23,32 +29,40 @@ def key_lines(text: str) -> dict[Path, int]:
 
     A path holds keys and, inside of arrays, indices: ("bearing", 1, "width").
     """
-    scanner = _Scanner(text)
+    scanner = _Scanner([*_tokens(text)])
     scanner.document()
     return scanner.lines
 
 
+def _tokens(text: str) -> Iterator[tuple[str, int]]:
+    """The tokens of a text with their lines, and an empty one at its end."""
+    line = 1
+    for match in _TOKEN.finditer(text):
+        if match[1]:
+            yield match[1], line
+            line += match[1].count("\n")
+    yield "", line
+
+
 @dataclass
 class _Scanner:
-    """Reads a text that is known to be valid once, for its keys alone."""
+    """Reads the tokens of a text that is known to be valid once, for its keys alone."""
 
-    text: str
+    tokens: list[tuple[str, int]]
     at: int = 0
-    line: int = 1
     lines: dict[Path, int] = field(default_factory=dict)
     arrays: dict[Path, int] = field(default_factory=dict)  # array of tables -> index of its newest table
 
     def document(self) -> None:
         table: Path = ()
-        while self._skip_blank():
-            if self._peek("["):
+        while self.tokens[self.at][0]:
+            if self._takes("["):
                 table = self._header()
-            else:
+            elif not self._takes("\n"):
                 self._assignment(table)
 
     def _header(self) -> Path:
-        many = self._peek("[[")
-        self._step(2 if many else 1)
+        many = self._takes("[")
         path = self._key(())
         if many:
             newest = self.arrays.get(path, -1) + 1
@@ -56,107 +70,54 @@ class _Scanner:
             self._note(path)
             path = (*path, newest)
         self._note(path)
-        self._step(2 if many else 1)
+        self.at += 2 if many else 1
         return path
 
     def _assignment(self, table: Path) -> None:
         path = self._key(table)
         self._note(path)
-        self._step(1)  # the equals sign
+        self.at += 1  # the equals sign
         self._value(path)
 
     def _key(self, table: Path) -> Path:
         """A dotted key under `table`; in a header, arrays of tables on the way mean their newest table."""
-        path = table
-        while True:
-            self._skip_spaces()
-            path = (*path, self._key_part())
-            self._skip_spaces()
-            if not self._peek("."):
-                return path
+        path = (*table, self._key_part())
+        while self._takes("."):
             self._note(path)
             if path in self.arrays:
                 path = (*path, self.arrays[path])
-            self._step(1)
+            path = (*path, self._key_part())
+        return path
 
     def _key_part(self) -> str:
-        begin = self.at
-        if self._peek('"') or self._peek("'"):
-            self._string()
-            quoted = self.text[begin : self.at]
-            return quoted[1:-1] if quoted[0] == "'" else str(tomllib.loads(f"v={quoted}")["v"])
-        while self.at < len(self.text) and self.text[self.at] not in _BARE_END:
-            self.at += 1
-        return self.text[begin : self.at]
+        part, _ = self.tokens[self.at]
+        self.at += 1
+        return str(tomllib.loads(f"v={part}")["v"]) if part[0] in "'\"" else part
 
     def _value(self, path: Path) -> None:
-        self._skip_blank()
-        if self._peek("["):
-            self._array(path)
-        elif self._peek("{"):
-            self._inline_table(path)
-        elif self._peek('"') or self._peek("'"):
-            self._string()
+        index = 0
+        if self._takes("["):
+            while not self._takes("]"):
+                if not self._takes(",", "\n"):
+                    self._note((*path, index))
+                    self._value((*path, index))
+                    index += 1
+        elif self._takes("{"):
+            while not self._takes("}"):
+                if not self._takes(","):
+                    self._assignment(path)
         else:
-            while self.at < len(self.text) and self.text[self.at] not in _VALUE_END:
+            while self.tokens[self.at][0] not in _VALUE_END:
                 self.at += 1
 
-    def _array(self, path: Path) -> None:
-        self._step(1)
-        index = 0
-        while self._skip_blank() and not self._peek("]"):
-            if self._peek(","):
-                self._step(1)
-                continue
-            self._note((*path, index))
-            self._value((*path, index))
-            index += 1
-        self._step(1)
-
-    def _inline_table(self, path: Path) -> None:
-        self._step(1)
-        while self._skip_blank() and not self._peek("}"):
-            if self._peek(","):
-                self._step(1)
-                continue
-            self._assignment(path)
-        self._step(1)
-
-    def _string(self) -> None:
-        quote = self.text[self.at]
-        fence = quote * 3 if self._peek(quote * 3) else quote
-        self._step(len(fence))
-        while self.at < len(self.text) and not self._peek(fence):
-            self._step(2 if quote == '"' and self._peek("\\") else 1)
-        self._step(len(fence))
-        while len(fence) == 3 and self._peek(quote):  # a fence may follow up to two quotes of the text itself
-            self._step(1)
+    def _takes(self, *tokens: str) -> bool:
+        """Whether the next token is one of these, which is then behind."""
+        taken = self.tokens[self.at][0] in tokens
+        self.at += taken
+        return taken
 
     def _note(self, path: Path) -> None:
-        self.lines.setdefault(path, self.line)
-
-    def _peek(self, expected: str) -> bool:
-        return self.text.startswith(expected, self.at)
-
-    def _step(self, count: int) -> None:
-        self.line += self.text.count("\n", self.at, self.at + count)
-        self.at += count
-
-    def _skip_spaces(self) -> None:
-        while self.at < len(self.text) and self.text[self.at] in " \t":
-            self.at += 1
-
-    def _skip_blank(self) -> bool:
-        """Skip blanks, line ends and comments; whether anything is left."""
-        while self.at < len(self.text):
-            if self._peek("#"):
-                end = self.text.find("\n", self.at)
-                self.at = len(self.text) if end < 0 else end
-            elif self.text[self.at] in " \t\r\n":
-                self._step(1)
-            else:
-                return True
-        return False
+        self.lines.setdefault(path, self.tokens[self.at][1])
 
 
 RINGED = ("floating-ring", "cartridge")  # kinds of bearings with an inner and an outer film
@@ -205,10 +166,13 @@ def tables(data: Mapping[str, Any], key: str) -> list[tuple[Path, dict[str, Any]
 def at(data: Any, path: Path) -> Any:
     """What stands at a path of nested tables and lists, None where nothing does."""
     for element in path:
-        if isinstance(element, int):
-            data = data[element] if isinstance(data, list) and element < len(data) else None
-        else:
-            data = data.get(element) if isinstance(data, dict) else None
+        match data, element:
+            case dict(), str():
+                data = data.get(element)
+            case list(), int() if element < len(data):
+                data = data[element]
+            case _:
+                return None
     return data
 
 

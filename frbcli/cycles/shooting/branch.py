@@ -31,8 +31,8 @@ from frbcli.cycles.shooting.shots import Rest, Shooting, Shot, both, largest
 from frbcli.equilibrium.linearised import LEAST
 from frbcli.equilibrium.static_films import share_of_cells
 from frbcli.film.cavitation.law import FRONTS
-from frbcli.scene.forms.tilted import cells_of
 from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.tilted import cells_of
 
 FIRST, SHORTEST, LONGEST = 0.05, 1e-3, 0.1  # steps along a branch
 MOST_POINTS = 150

@@ -28,7 +28,7 @@ from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines, che
 from frbcli.errors import Fault, NotConverged
 from frbcli.linear.columns import BALL_SHEET
 from frbcli.scene.gate.gate import require
-from frbcli.scene.gate.rule import FILMS
+from frbcli.scene.gate.rule import FILMS, sheet_top
 
 Observer = Callable[[int, int], None]
 SPEEDS = 10
@@ -133,7 +133,8 @@ def ball_bearing_sheet(
             problem = "loads one row of an opposed pair: its sheet would be of two different rows."
             remedy = "Remove it for the sheet, and give each row's preload instead."
             raise case.refused(Fault(f"{element.key}.locating", "", None, problem, remedy))
-    speeds = sorted(_speeds(case) if speeds_Hz is None else speeds_Hz)
+    shares = range(1, SPEEDS + 1)
+    speeds = sorted([sheet_top(case) * share / SPEEDS for share in shares] if speeds_Hz is None else speeds_Hz)
     carried = None if loads else _Carried(case)
     points: list[BallState] = []
     for number, speed in enumerate(speeds):
@@ -211,15 +212,6 @@ def _of_balls(element: BallBearingElement, rest: RestingRings) -> dict[str, Any]
         "outer_load": float(balls.outer_load.max()),
         "balls_apart": int(np.count_nonzero(balls.inner_load == 0.0)),
     }
-
-
-def _speeds(case: Case) -> list[float]:
-    """Default speeds in Hz."""
-    if case.given_speed is not None:
-        top = max(abs(case.speed.start), abs(case.speed.end))
-        return [top * share / SPEEDS for share in range(1, SPEEDS + 1)]
-    problem, remedy = "is missing.", 'Give --speed, e.g. --speed "900 Hz", or add [speed].'
-    raise case.refused(Fault("speed", "", None, problem, remedy))
 
 
 SETTLED, CARRIED = 1e-12, 1e-6  # of the load: what is left over at rest, and where steps no longer help

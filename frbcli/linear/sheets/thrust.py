@@ -20,11 +20,12 @@ from frbcli.case.oil import Oil, Thermal
 from frbcli.case.schema import Case
 from frbcli.columns import Table, Tabular, table_of
 from frbcli.elements.collar import BOTH, Collar, NotCarried, collar_at_rest, collar_of, collar_under, pad_of
-from frbcli.errors import input_error
+from frbcli.errors import InputError, input_error
 from frbcli.film.pad_geometry import COARSE, MESH, Pad
 from frbcli.film.pads import PadFilm, PadMesh, PadOil, pad_film, pad_mesh, ring_of_pads
 from frbcli.linear.columns import THRUST
-from frbcli.linear.sheets.thrust_faults import no_gap, require_sheet
+from frbcli.scene.gate.rule import sheet_top
+from frbcli.scene.gate.static import require_thrust_sheet
 from frbcli.scene.machine.turbocharger import shaft_of
 from frbcli.units import display
 
@@ -282,8 +283,8 @@ def thrust_sheet(
     >>> round(sheet.points[0].load)
     446
     """
-    require_sheet(case, gaps or ())
-    speeds = sorted(_speeds(case) if speeds_Hz is None else speeds_Hz)
+    require_thrust_sheet(case, gaps or ())
+    speeds = sorted([sheet_top(case)] if speeds_Hz is None else speeds_Hz)
     states: list[ThrustState] = []
     for bearing in case.thrust_bearings:
         films = thrust_films(case, bearing)
@@ -305,11 +306,11 @@ def _gap_of(collar: Collar, load: float, omega: float) -> float:
     """The gap in m that carries a load in N. Raises InputError if there is none."""
     low = collar.carried(collar.wide, omega)
     if load < low:
-        raise no_gap(load, f"is below the {low:.4g} N that the film carries at a gap of {display(collar.wide, 'm')}.")
+        raise _no_gap(load, f"is below the {low:.4g} N that the film carries at a gap of {display(collar.wide, 'm')}.")
     try:
         return replace(collar, load=load).rest(omega).gap
     except NotCarried as error:
-        raise no_gap(load, f"is not carried. {error}") from None
+        raise _no_gap(load, f"is not carried. {error}") from None
 
 
 def _gaps(films: ThrustFilms) -> list[float]:
@@ -320,8 +321,7 @@ def _gaps(films: ThrustFilms) -> list[float]:
     return [bearing.taper * share for share in np.geomspace(0.25, 2.5, POINTS).tolist()]
 
 
-def _speeds(case: Case) -> tuple[float, ...]:
-    if case.given_speed is not None:
-        return (max(abs(case.speed.start), abs(case.speed.end)),)
-    problem, remedy = "is missing.", 'Give --speed, e.g. --speed "900 Hz", or add [speed].'
-    raise input_error(case.name or "case", "speed", "", problem, remedy)
+def _no_gap(load: float, problem: str) -> InputError:
+    """The error of a load in N that no gap carries."""
+    remedy = "Give another load, or change the pads, the oil or the speed."
+    return input_error("case", "--load", f"{load:.6g} N", problem, remedy)

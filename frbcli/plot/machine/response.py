@@ -12,8 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frbcli.analysis.order_tracking import OrderTrack
-from frbcli.arrays import Array
-from frbcli.linear.critical_speeds import larger_semi_axis
+from frbcli.arrays import Array, larger_semi_axis
 from frbcli.linear.modes import CriticalMap
 from frbcli.linear.response import BEYOND_GAP, DOUBTFUL_MOTION, SOUND, UNBALANCE, Response
 from frbcli.plot.style import (
@@ -213,7 +212,7 @@ def draw_critical_map(axes: Axes, speeds: CriticalMap) -> None:
         marker = FILM_MARKS[number % 3] if len(springs) < FEW else ""
         axes.plot(springs, speeds.film_speeds_Hz, color=VERMILION, linestyle=FILM_DASHES[number % 3], marker=marker,
                   markersize=5.0, label=label)  # fmt: skip
-    top = max(abs(speeds.case.speed.start), abs(speeds.case.speed.end))
+    top = speeds.case.speed.top
     axes.axhline(top, color=GREY, linewidth=0.8, linestyle=(0, (1, 2)), label="highest speed of the case")
     axes.set(xscale="log", yscale="log", xlim=(float(speeds.stiffness[0]), float(speeds.stiffness[-1])))
     lowest = float(np.nanmin([speeds.forward, speeds.backward]))

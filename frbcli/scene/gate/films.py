@@ -39,10 +39,10 @@ from frbcli.scene.films import (
     tilt_key,
     tilts,
 )
-from frbcli.scene.forms.form import CLIPPED
-from frbcli.scene.forms.tilted import CELLS, INCLINED, TILTED
+from frbcli.scene.forms import CLIPPED
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.planning.film_choice import film_form, form_of
+from frbcli.scene.tilted import CELLS, INCLINED, TILTED
 from frbcli.units import display
 
 SMOOTH = 'Write contact.model = "spring"'

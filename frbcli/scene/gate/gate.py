@@ -1,7 +1,7 @@
 """The gate: one table of rules, each with the analyses that it holds for. Every analysis asks it before a film is made.
 
 A rule is a function of a case that yields the faults: key, value, problem, remedy. What a form of films or a coupling
-is not made for is in its own row, see `rules` in scene/forms/form.py and scene/coupling.py. `docs/matrix.md` is made by
+is not made for is in its own row, see `rules` in scene/forms.py and scene/coupling.py. `docs/matrix.md` is made by
 asking this gate."""
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.scene.coupling import coupling_of
 from frbcli.scene.films import channel_faults, tilts
-from frbcli.scene.forms.tilted import AT_REST, RUNS
 from frbcli.scene.gate import films, kinematic, runs, static
 from frbcli.scene.gate.kinematic import choice_faults, key_in, tested_case
 from frbcli.scene.gate.rule import (
@@ -48,6 +47,7 @@ from frbcli.scene.machine.rotor import (
     without_film,
 )
 from frbcli.scene.planning.film_choice import form_of
+from frbcli.scene.tilted import AT_REST, RUNS
 
 
 def _of_films(of: Callable[[Case], Faults]) -> Callable[[Case], Faults]:

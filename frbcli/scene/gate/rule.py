@@ -48,7 +48,15 @@ def oil_flow_signal(case: Case) -> str | None:
 
 def run_omega(case: Case) -> float:
     """Highest speed of the rotor in a run, rad/s."""
-    return 2.0 * math.pi * max(abs(case.speed.start), abs(case.speed.end))
+    return 2.0 * math.pi * case.speed.top
+
+
+def sheet_top(case: Case) -> float:
+    """Highest speed in Hz of a sheet of bearings. Raises InputError for a case without speeds."""
+    if case.given_speed is not None:
+        return case.speed.top
+    problem, remedy = "is missing.", 'Give --speed, e.g. --speed "900 Hz", or add [speed].'
+    raise case.refused(Fault("speed", "", None, problem, remedy))
 
 
 def motion_omega(case: Case) -> float:

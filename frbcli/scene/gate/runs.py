@@ -15,11 +15,10 @@ from frbcli.scene.films import (
     film_places,
     is_plain,
 )
-from frbcli.scene.forms.form import TableForm
-from frbcli.scene.forms.solutions import solution_fault
-from frbcli.scene.forms.tilted import CELLS
+from frbcli.scene.forms import TableForm, solution_fault
 from frbcli.scene.gate.rule import run_omega
 from frbcli.scene.planning.film_choice import all_clipped, form_of
+from frbcli.scene.tilted import CELLS
 
 
 def theory_faults(case: Case) -> Iterator[Fault]:
@@ -113,7 +112,7 @@ def drive_faults(case: Case) -> Iterator[Fault]:
     if coupling_of(case).in_turn:
         problem = "takes the rotor's speed as given, and [drive] leaves it free."
         yield Fault("film.coupling", case.film.coupling, None, problem, "Write auto, or [speed] instead of [drive].")
-    if case.axial is not None and isinstance(case.axial.load, OverTime):
+    if case.axial is not None and case.axial.changes:
         problem = "changes over time, and the collar of a rotor whose speed is free has one load for each speed."
         yield Fault("axial.load", "", None, problem, 'Give one load, or { at = "1000 Hz", load = "40 N" }.')
     if case.drive.reaction and case.bases:

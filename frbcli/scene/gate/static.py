@@ -3,7 +3,7 @@ unbalance."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from frbcli.case.film import FilmGeometry
@@ -11,6 +11,7 @@ from frbcli.case.schema import Case
 from frbcli.elements.pin import PinElement
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
+from frbcli.film.pad_geometry import LAWS
 from frbcli.scene.coupling import coupling_of
 from frbcli.scene.course import default_speeds, keeps_oil
 from frbcli.scene.films import (
@@ -34,6 +35,7 @@ from frbcli.scene.machine.rotor import (
 )
 from frbcli.scene.machine.turbocharger import shaft_of
 from frbcli.scene.planning.film_choice import all_clipped, form_of
+from frbcli.units import display
 
 
 def sheet_faults(case: Case) -> Iterator[Fault]:
@@ -301,3 +303,27 @@ def turning_openings(case: Case) -> bool:
 
 def _turns(case: Case, place: FilmPlace) -> bool:
     return place.grid_body != HOUSING or turns_with_oil(case, place)
+
+
+def require_thrust_sheet(case: Case, gaps: Sequence[float] = ()) -> None:
+    """Raises InputError with every reason why thrust bearings of a case have no sheet at some gaps in m."""
+    if reasons := [*_thrust_faults(case), *_beyond_play(case, gaps)]:
+        raise case.refused(*reasons)
+
+
+def _thrust_faults(case: Case) -> Iterator[Fault]:
+    if not case.thrust_bearings:
+        yield Fault("thrust_bearing", "", None, "is missing.", "Add a table [[thrust_bearing]]; see docs/thrust.md.")
+    if case.film.cavitation not in LAWS:
+        problem = "is not modelled in thrust bearings, whose pressure is found without oil fractions and history."
+        remedy = f"Write film.cavitation = {' or '.join(LAWS)}; in converging pads they agree."
+        yield Fault("film.cavitation", case.film.cavitation, None, problem, remedy)
+
+
+def _beyond_play(case: Case, gaps: Sequence[float]) -> Iterator[Fault]:
+    for bearing in case.thrust_bearings:
+        play = bearing.end_play
+        for gap in gaps if bearing.side == "both" and play is not None else ():
+            if play is not None and gap >= play:
+                problem = f"leaves no gap on the other side: the end play is {display(play, 'm')}."
+                yield Fault("--gap", display(gap, "m"), None, problem, "Give a gap below it, up to half for a load.")

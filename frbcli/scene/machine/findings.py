@@ -19,6 +19,7 @@ from operator import attrgetter
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import larger_semi_axis
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.film import ColdClearance, FilmGeometry
 from frbcli.case.schema import Case
@@ -202,7 +203,7 @@ def film_tilts(case: Case) -> tuple[FilmTilt, ...]:
         FilmTilt(
             place.name.replace("_", " "),
             float(np.hypot(*at_rest)),
-            _largest(turning),
+            float(larger_semi_axis(turning)),
             cone,
             0.5 * place.geometry.width / place.geometry.clearance,
         )
@@ -218,11 +219,6 @@ def _whirl(rotor: LinearRotor, omega: float) -> NDArray[np.complex128]:
     held = np.block([[dynamic, p.T], [p, np.zeros((len(p), len(p)))]])
     pulled = np.concatenate([omega**2 * here.unbalance + here.bent, np.zeros(len(p))])
     return np.asarray(np.linalg.solve(held, pulled)[: rotor.size])
-
-
-def _largest(amplitude: NDArray[np.complex128]) -> float:
-    """The half major axis of the ellipse that complex amplitudes (2,) run through."""
-    return float(np.sqrt(0.5 * (np.sum(np.abs(amplitude) ** 2) + np.abs(np.sum(amplitude**2)))))
 
 
 def _cone(case: Case) -> float:

@@ -238,14 +238,15 @@ class _Builder:
 
     def _wall(self, film: int, wall: str | float | OverTime | WallNode, name: str) -> int:
         """The node of a shaft or housing at a film; an adiabatic one has the temperature of its film, and no node."""
-        if isinstance(wall, WallNode):
-            node = self._node(name, wall.capacity)
-            place = self._given(f"beyond {name}", wall.temperature)
-            self._links.append((node, place, wall.conductance, -1))
-        elif isinstance(wall, str):
-            return film
-        else:
-            node = self._given(name, wall)
+        match wall:
+            case str():
+                return film
+            case WallNode():
+                node = self._node(name, wall.capacity)
+                place = self._given(f"beyond {name}", wall.temperature)
+                self._links.append((node, place, wall.conductance, -1))
+            case _:
+                node = self._given(name, wall)
         self._to_film(film, node)
         return node
 

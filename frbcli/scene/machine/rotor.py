@@ -238,12 +238,9 @@ def make_rotor(case: Case, sees: tuple[str, ...] = PLANE, free_speed: bool = Fal
     Raises InputError if its shaft has no modes.
     """
     bodies, films, elements, centred = _bodies_and_links(case, sees, free_speed)
-    rotor = preset(_assembled(bodies, films, elements), centred)
+    own = elements.links, elements.forces, elements.loads, elements.ports
+    rotor = preset(assembled(bodies, films, *own), centred)
     return replace(rotor, cones=tuple(_cones(case, bodies)))
-
-
-def _assembled(bodies: Sequence[Body], films: Sequence[Link], elements: Parts) -> LinearRotor:
-    return assembled(bodies, films, elements.links, elements.forces, elements.loads, elements.ports)
 
 
 def collar_tilt(case: Case) -> Array | None:

@@ -45,12 +45,11 @@ from frbcli.scene.films import (
     turns_with_oil,
     volume_film,
 )
-from frbcli.scene.forms.form import NO_FILM
-from frbcli.scene.forms.solutions import SOLUTIONS
-from frbcli.scene.forms.tilted import CELLS, INCLINED, TILTED, cells_of
+from frbcli.scene.forms import NO_FILM, SOLUTIONS
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.planning.cell_choice import compared_states
 from frbcli.scene.planning.film_choice import Plan
+from frbcli.scene.tilted import CELLS, INCLINED, TILTED, cells_of
 
 # What the balances of a film may be off by over its pace: over the tolerance of a step, and its limits. A film that is
 # off by 1e-4 of its pace in each stage leaves 1e-6 of the clearance in a run.

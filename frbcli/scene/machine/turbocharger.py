@@ -183,7 +183,7 @@ class TurbochargerShaft(Shaft):
         collars = [Journal(COLLAR, each.position or 0.0) for each in acting]
         pairs = (each for each in case.elements if each.kind == "ball" and each.row_distance is not None)
         collars += [Journal(each.name, each.position or 0.0) for each in pairs]
-        top = 0.0 if speed is None else 2.0 * math.pi * max(abs(speed.start), abs(speed.end))
+        top = 0.0 if speed is None else 2.0 * math.pi * speed.top
         asked = (rotor.modes, rotor.cutoff, case.accuracy.target)
         try:
             return _free_shaft(sections, self._wheels, journals, tuple(collars), bow_places(case), top, asked)

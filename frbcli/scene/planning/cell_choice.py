@@ -19,7 +19,6 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.film import FilmGeometry
-from frbcli.case.over_time import OverTime
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
@@ -168,7 +167,7 @@ def run_down_profile(case: Case) -> SpeedProfile:
     if speed.times:
         problem = "say how the speed goes down, too."
         raise case.refused(Fault("speed.points", f"{len(speed.times)} points", None, problem, "Call `frb runup`."))
-    if case.axial is not None and isinstance(case.axial.load, OverTime):
+    if case.axial is not None and case.axial.changes:
         problem = "changes over time, and a run-down has each speed twice: a speed has more than one load."
         fault = Fault("axial.load", "over time", None, problem, "Give one load, or one with the square of the speed.")
         raise case.refused(fault)

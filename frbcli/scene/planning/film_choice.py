@@ -9,7 +9,6 @@ A plan, and the choices that it is made of.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from frbcli.case.film import FilmGeometry
 from frbcli.case.schema import Case
@@ -18,9 +17,20 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import Mesh
 from frbcli.scene.films import film_places, is_published, misaligned, turning_rings
-from frbcli.scene.forms.form import CHAINS, CLIPPED, CLOSED_FORM, FIELDS, MOST_EXPENSIVE_FIRST, NO_FILM, TABLE, FilmForm
-from frbcli.scene.forms.solutions import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
-from frbcli.scene.forms.tilted import CELLS, INCLINED, TILTED, CellForm
+from frbcli.scene.forms import (
+    CHAINS,
+    CLIPPED,
+    CLOSED_FORM,
+    FIELDS,
+    MOST_EXPENSIVE_FIRST,
+    NO_FILM,
+    SOLUTION_ERROR,
+    SOLUTION_MESH,
+    SOLUTIONS,
+    TABLE,
+    FilmForm,
+    table_obstacle,
+)
 from frbcli.scene.planning.cell_choice import (
     WorstFilm,
     expected_eccentricity,
@@ -30,10 +40,7 @@ from frbcli.scene.planning.cell_choice import (
     slenderness_of,
     worst_film,
 )
-
-if TYPE_CHECKING:
-    from frbcli.scene.forms.form import FilmForm
-
+from frbcli.scene.tilted import CELLS, INCLINED, TILTED, CellForm
 
 # Eccentricity up to which films hold the target. A finer table costs little more; a film that is solved at every film
 # call would cost much more for eccentricities close to 1.

@@ -24,7 +24,7 @@ from frbcli.scene.films import (
     tilt_of,
     tilts,
 )
-from frbcli.scene.forms.form import PUBLISHED, transport_of
+from frbcli.scene.forms import PUBLISHED, transport_of
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.kinematic import tested_case
 from frbcli.scene.gate.rule import KINEMATIC, ROTATION, motion_omega

@@ -37,7 +37,7 @@ from frbcli.scene.films import (
     turning_rings,
     turns_with_oil,
 )
-from frbcli.scene.forms.form import SOLVED_EACH_CALL
+from frbcli.scene.forms import SOLVED_EACH_CALL
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import RUN
 from frbcli.scene.machine.rotor import element_decisions

@@ -14,12 +14,13 @@ import pytest
 from marches import in_two_bearings
 
 from frbcli.analysis.order_tracking import order_track
+from frbcli.arrays import larger_semi_axis
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.cycles.limit_cycles import limit_cycles
 from frbcli.linear import response as of_response
-from frbcli.linear.response import DOUBTFUL, Response, forced_motion, larger_semi_axis, response
+from frbcli.linear.response import DOUBTFUL, Response, forced_motion, response
 from frbcli.linear.stability import stability_points
 from frbcli.plot.machine.response import response_figure
 from frbcli.rotor.assembly import jeffcott_rotor

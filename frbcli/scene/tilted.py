@@ -31,7 +31,7 @@ from frbcli.scene.films import (
     is_published,
     misaligned,
 )
-from frbcli.scene.forms.form import PUBLISHED, FilmForm, SolveCounts, cells_B, transport_of
+from frbcli.scene.forms import PUBLISHED, FilmForm, SolveCounts, cells_B, transport_of
 from frbcli.scene.gate.rule import (
     ALL,
     BEARING,
