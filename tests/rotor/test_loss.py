@@ -20,6 +20,7 @@ from frbcli.arrays import Array, Complex
 from frbcli.case.reading.load import case_from_dict, load_case
 from frbcli.errors import InputError
 from frbcli.linear.response import response
+from frbcli.results.store import Run
 from frbcli.rotor.assembly import LinearRotor
 from frbcli.scene.changes import after_losses, case_at
 from frbcli.scene.machine.rotor import make_rotor
@@ -41,7 +42,7 @@ def jeffcott(low: float, high: float, **rotor: object) -> frbcli.Case:
     return case_from_dict({**tables, "accuracy": {"tolerance": 1e-9, "steps_per_revolution": 400}}, "jeffcott")
 
 
-def disk(run: frbcli.Run, name: str = "disk") -> Complex:
+def disk(run: Run, name: str = "disk") -> Complex:
     return np.asarray(run[f"{name}_x_m"] + 1j * run[f"{name}_y_m"])
 
 
