@@ -1,7 +1,5 @@
 """What holds for all tests, however they were started."""
 
-from __future__ import annotations
-
 import gc
 import os
 import signal

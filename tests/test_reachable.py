@@ -4,8 +4,6 @@ The walk starts at the console script, the commands and the public names and fol
 It takes a name for used wherever it stands, so that what it does not reach has no use at all.
 """
 
-from __future__ import annotations
-
 import ast
 from collections import defaultdict
 from collections.abc import Iterator

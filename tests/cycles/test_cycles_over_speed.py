@@ -1,7 +1,5 @@
 """Limit cycles beside bearings whose coefficients depend on the speed."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The tutorial, its notebook and the site: what they show works."""
 
-from __future__ import annotations
-
 import importlib.util
 import json
 import re

@@ -1,7 +1,5 @@
 """Plain bearings between axial grooves, and the printed tables of their sheets."""
 
-from __future__ import annotations
-
 import math
 
 from paths import rows_of

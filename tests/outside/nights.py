@@ -4,8 +4,6 @@ processes that try it.
 FRB_NIGHT is the number of the night, else the day it is; `.ci/nightly` tells it, so that what it found is found again.
 """
 
-from __future__ import annotations
-
 import os
 import resource
 import subprocess

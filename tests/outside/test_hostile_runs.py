@@ -1,7 +1,5 @@
 """Hostile run files: each is refused with one message, or read by all commands, in little time and memory."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What reads a run needs no more memory for a long run than for a short one."""
 
-from __future__ import annotations
-
 import json
 import textwrap
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Pairs of nasty values in every command that takes a case: each is done, refused, or ended early with a reason."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,8 +1,6 @@
 """Beams against exact solutions: Euler, Timoshenko, gyroscopic whirl, reduction; and machines that are put together of
 them, of supports and of elements."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -5,8 +5,6 @@ r = Omega / w (Nicholas, Gunter and Allaire, "Effect of residual shaft bow on un
 single mass flexible rotor", J. Eng. Power 98, 1976); W = x + i y, and an unbalance of phase 0 points to y at angle 0.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from pathlib import Path

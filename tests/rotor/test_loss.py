@@ -1,7 +1,5 @@
 """A blade that is lost during a run: closed forms of linear rotors, and films that come to the same orbit."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from itertools import pairwise

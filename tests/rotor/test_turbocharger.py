@@ -1,7 +1,5 @@
 """Turbocharger rotors: natural frequencies, the reduced rotor as a whole, and floating rings."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace

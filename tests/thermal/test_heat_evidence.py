@@ -1,7 +1,5 @@
 """Evidence for heat and flow of films: dissipation by pressures, published charts, the energy equation, finer cells."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

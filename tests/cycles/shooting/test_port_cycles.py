@@ -1,7 +1,5 @@
 """Limit cycles with forces besides those of films that are not linear: springs, stops and ball bearings."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

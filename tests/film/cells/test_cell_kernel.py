@@ -1,7 +1,5 @@
 """The compiled kernel of films on volumes against the plain one, and its derivatives against differences."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Columns of cells that keep their oil in the time loop: cavities that turn with the oil, see resting.py."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

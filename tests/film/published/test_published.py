@@ -1,8 +1,6 @@
 """The published two-phase form on finite volumes: kernel and plain form, limits, quadratic elements, figure 6.7, and
 the oil that it creates."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

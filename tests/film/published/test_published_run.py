@@ -1,7 +1,5 @@
 """Run-ups in the published two-phase form: known limits, quadratic elements, orders, and the oil that it creates."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

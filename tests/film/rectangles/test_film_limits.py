@@ -1,8 +1,6 @@
 """Films against closed forms and published tables: short, infinitely long and finite bearings; and what every film
 must do, whatever the motion: symmetries, scaling, dissipation, derivatives."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
