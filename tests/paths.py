@@ -1,7 +1,5 @@
 """Where the project lies, for tests and pages that read its files, and the tables in DATA."""
 
-from __future__ import annotations
-
 import csv
 from pathlib import Path
 

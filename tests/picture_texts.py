@@ -3,8 +3,6 @@
 `watch` looks at every picture that the program draws from then on; conftest.py asks after each test what was seen.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """Closed forms of a rigid rotor whose bearings stand on a body of their own: each direction by itself, in series."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

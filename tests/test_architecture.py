@@ -1,7 +1,5 @@
 """Who may import whom: the table of docs/architecture.md, read and enforced."""
 
-from __future__ import annotations
-
 import ast
 import re
 import subprocess

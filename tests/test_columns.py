@@ -1,7 +1,5 @@
 """One declaration of a column makes pandas, CSV, JSON, the terminal's table with its legend, and a page's list."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 from operator import attrgetter

@@ -1,7 +1,5 @@
 """The remedy for a name that is not known."""
 
-from __future__ import annotations
-
 import pytest
 
 from frbcli.errors import InputError, did_you_mean, nearest

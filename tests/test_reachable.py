@@ -4,8 +4,6 @@ The walk starts at the console script, the commands and the public names and fol
 It takes a name for used wherever it stands, so that what it does not reach has no use at all.
 """
 
-from __future__ import annotations
-
 import ast
 from collections import defaultdict
 from collections.abc import Iterator
@@ -19,11 +17,11 @@ from frbcli.plot.picture import PICTURES
 PACKAGE = Path(frbcli.__file__).parent
 
 # In array notation what a kernel computes, for readers and for the tests that hold the kernel to it.
-PLAIN = {
-    ("frbcli.film.rectangles.film_force", "solve_plain"): "frbcli.film.rectangles.modal",
-    ("frbcli.film.rectangles.short", "short_pressure"): "frbcli.film.rectangles.short",
-    ("frbcli.film.roughness.plain", "plain_touch"): "frbcli.film.roughness.asperities",
-}
+PLAIN = (
+    ("frbcli.film.rectangles.film_force", "solve_plain"),
+    ("frbcli.film.rectangles.short", "short_pressure"),
+    ("frbcli.film.roughness.plain", "plain_touch"),
+)
 Name = tuple[str, str]  # module, name of what it defines
 
 
@@ -143,12 +141,6 @@ def test_commands_and_public_names_reach_all_that_is_there() -> None:
         if (here, name) not in found and not name.startswith("__")
     ]
     assert sorted(unused) == []
-
-
-def test_what_is_plain_stands_beside_its_kernel() -> None:
-    for (module, name), kernel in PLAIN.items():
-        assert (PACKAGE.parent / f"{module.replace('.', '/')}.py").read_text().count(f"def {name}(") == 1
-        assert "@compiled(" in (PACKAGE.parent / f"{kernel.replace('.', '/')}.py").read_text()
 
 
 def test_the_walk_finds_what_nothing_uses() -> None:

@@ -1,7 +1,5 @@
 """Tables and errors on a screen of 80 columns."""
 
-from __future__ import annotations
-
 import pytest
 from helpers.screen import seen
 

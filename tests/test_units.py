@@ -1,7 +1,5 @@
 """Text with a unit -> SI, and back."""
 
-from __future__ import annotations
-
 import math
 import subprocess
 import sys

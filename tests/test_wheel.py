@@ -1,7 +1,5 @@
 """A wheel that brings its kernels along compiles nothing where it is installed."""
 
-from __future__ import annotations
-
 import csv
 import json
 import os

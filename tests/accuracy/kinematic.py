@@ -1,7 +1,5 @@
 """The stated error of journals that turn at rest against finer cells, kept as JSON."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import asdict, dataclass

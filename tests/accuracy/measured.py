@@ -1,7 +1,5 @@
 """The ladder and the full run of a case, measured and kept as JSON."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import asdict, dataclass
 from pathlib import Path

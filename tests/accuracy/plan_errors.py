@@ -6,8 +6,6 @@ are the machines of docs/accuracy-measured.md; a seed draws one of the shipped m
 clearances, viscosities, unbalances and acceleration.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import random

@@ -4,8 +4,6 @@
 the next time. With cases named, these alone are measured, and the page is left as it is. Half an hour in all.
 """
 
-from __future__ import annotations
-
 import math
 import statistics
 import sys

@@ -4,8 +4,6 @@
 some minutes. The truth is on FINER cells, and FINE ones tell its own error; tables have FINEST times their elements.
 """
 
-from __future__ import annotations
-
 import math
 import random
 import statistics

@@ -4,8 +4,6 @@
 minutes in all.
 """
 
-from __future__ import annotations
-
 import contextlib
 import math
 import statistics

@@ -5,8 +5,6 @@ uncertainties and at a tenth of the target in half as long steps, keeps both run
 the next time, and writes a line of JSON for each and the table of docs/accuracy-measured.md.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import random

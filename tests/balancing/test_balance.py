@@ -1,7 +1,5 @@
 """Unbalances that were put in are found: by the linear response of the case of a run, and by trial runs."""
 
-from __future__ import annotations
-
 import cmath
 import json
 import math

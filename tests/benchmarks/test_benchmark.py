@@ -4,8 +4,6 @@ The naive way is what one writes first: scikit-fem assembly and a sparse solve a
 pressure clipped at the quadrature points, and scipy's LSODA around it.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import resource

@@ -6,8 +6,6 @@ And a warm step of Elrod's film through time. Both on the cells that one would t
 and on the fewer ones that are as exact with them (tests/film/cells/test_volumes.py).
 """
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable

@@ -4,8 +4,6 @@ The rigid rotor in short bearings with another viscosity stands for the same rot
 followed on their own.
 """
 
-from __future__ import annotations
-
 import math
 from functools import cache
 

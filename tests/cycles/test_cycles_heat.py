@@ -1,7 +1,5 @@
 """Limit cycles with heat: derivatives, the limit of much oil, and a run, whose temperature is a state."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Cycles of films whose forces have kinks, on pockets, slots, lobes and cells, and on rough surfaces."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import lru_cache

@@ -4,8 +4,6 @@ The rigid rotor in short bearings without supply has two numbers, the speed w = 
 Gamma = mu R L^3 omega / (W C^2) / w with the load W of a bearing.
 """
 
-from __future__ import annotations
-
 import math
 import tomllib
 from dataclasses import replace

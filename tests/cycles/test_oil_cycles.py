@@ -1,7 +1,5 @@
 """Limit cycles of films that keep their oil: the map of the time loop over a period, shooting, the command."""
 
-from __future__ import annotations
-
 import json
 import math
 from functools import cache

@@ -1,8 +1,6 @@
 """Branches of cycles by shooting, on motions whose cycles are known; curves that are followed through folds, and
 multipliers of cycles."""
 
-from __future__ import annotations
-
 import math
 from functools import cache
 from typing import Any

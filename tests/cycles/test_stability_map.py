@@ -1,7 +1,5 @@
 """Stability maps: curves of Hopf points and folds over two numbers, the speed or of the case, against diagrams."""
 
-from __future__ import annotations
-
 import json
 import math
 from functools import cache

@@ -4,8 +4,6 @@ The answers are those of linear responses, of the time loop, which the motions c
 unbalance.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import dataclass, replace

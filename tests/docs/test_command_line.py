@@ -1,7 +1,5 @@
 """Exit codes and streams of docs/command-line.md: the table of command_lines.md is run, line after line."""
 
-from __future__ import annotations
-
 import json
 import re
 import shlex

@@ -1,7 +1,5 @@
 """The documents cannot rot: pages that are written by a program are up to date, and what they name is there."""
 
-from __future__ import annotations
-
 import re
 import shlex
 import tomllib

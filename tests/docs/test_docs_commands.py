@@ -1,7 +1,5 @@
 """Every command line that the documents show is one that `frb` takes: its options, its case, its settings, its plan."""
 
-from __future__ import annotations
-
 import importlib.util
 import re
 import shlex

@@ -1,7 +1,5 @@
 """Docstrings of public functions: sections of numpydoc that name every parameter, with examples that run."""
 
-from __future__ import annotations
-
 import doctest
 import inspect
 import re

@@ -1,8 +1,6 @@
 """Examples that need files or take long: each is run in a folder with a run and a measurement. Their results are not
 compared, for they are those of a run of a moment."""
 
-from __future__ import annotations
-
 import doctest
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The tutorial, its notebook and the site: what they show works."""
 
-from __future__ import annotations
-
 import importlib.util
 import json
 import re
@@ -9,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import picture_texts
@@ -54,8 +53,9 @@ def test_the_notebook_of_the_tutorial_runs(tmp_path: Path, monkeypatch: pytest.M
     assert (tmp_path / "turbo.h5").exists()
 
 
-def builder() -> object:
-    spec = importlib.util.spec_from_file_location("build_site", DOCS / "site" / "build.py")
+def of_site(name: str) -> ModuleType:
+    """A module of docs/site."""
+    spec = importlib.util.spec_from_file_location(f"site_{name}", DOCS / "site" / f"{name}.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -64,22 +64,17 @@ def builder() -> object:
 
 
 def test_every_command_and_every_public_name_has_its_place() -> None:
-    module = builder()
-    assert set(module.SHOWN) == set(COMMANDS)  # type: ignore[attr-defined]
-    page = module.reference()  # type: ignore[attr-defined]
+    module = of_site("build")
+    assert set(module.SHOWN) == set(COMMANDS)
+    page = module.reference()
     assert [name for name in frbcli.__all__ if name != "__version__" and f"\n## {name}\n" not in page] == []
-    named = set(re.findall(r"([\w-]+)\.md", module.configuration(Path("a"), Path("b"))))  # type: ignore[attr-defined]
+    named = set(re.findall(r"([\w-]+)\.md", module.configuration(Path("a"), Path("b"))))
     assert {page.stem for page in DOCS.glob("*.md")} - {"README"} <= named
 
 
 def loaded_hook() -> Callable[[str], str]:
     pytest.importorskip("latex2mathml", reason="needs the extra frbcli[docs]")
-    spec = importlib.util.spec_from_file_location("site_equations", DOCS / "site" / "equations.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module.on_page_content  # type: ignore[no-any-return]
+    return of_site("equations").on_page_content  # type: ignore[no-any-return]
 
 
 @pytest.mark.parametrize("page", sorted(DOCS.glob("*.md")), ids=lambda page: page.stem)
@@ -126,7 +121,7 @@ FURTHER = (
 def test_texts_of_the_gallery_cover_no_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """conftest.py looks at each picture of a line: those of the site and further ones."""
     monkeypatch.chdir(tmp_path)
-    site: Any = builder()
+    site: Any = of_site("build")
     shown = [words for words, picture in site.SHOWN.values() if picture and words != site.RUN]
     for words in (site.RUN, *shown, *(words for words, *_ in site.MORE), *FURTHER):
         assert run(words) == 0, words

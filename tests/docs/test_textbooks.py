@@ -1,7 +1,5 @@
 """The rows of docs/textbooks.md: frb has the figures of their sources within the bounds of the rows."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -4,8 +4,6 @@ Tolerances: thresholds and resting positions 0.5 % and 0.3 % of an independent, 
 bear what thesis-numbers.toml says; rises move by tenths of a second with the noise that excites them.
 """
 
-from __future__ import annotations
-
 import re
 import shlex
 from pathlib import Path

@@ -4,8 +4,6 @@ With the Reynolds condition the films here differ from that program's forces by 
 it says by up to 0.7 %, with 48 x 12 to 240 x 60 cells alike: its positions are the less accurate of the two.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -5,8 +5,6 @@ Between a ring at rest and its shell nothing turns that would carry. Without a w
 under one it rests on its elastic shell, pressed in by the load over the stiffness, or on the summits of rough surfaces.
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

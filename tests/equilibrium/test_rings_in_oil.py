@@ -1,8 +1,6 @@
 """Machines whose rings turn in films that keep their oil: small motions, which the speeds of the rings follow, rest,
 and what is known of how the oil follows."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

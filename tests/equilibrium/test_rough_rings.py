@@ -1,7 +1,5 @@
 """Small motions of machines whose rings turn, between rough surfaces, too: the speeds of the rings follow them."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """What is sought at rest: places of journals by Newton's method, Hopf points, and errors by where cells lie."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Stiffness and damping of films at rest: the same in every command, right, and with an error that holds."""
 
-from __future__ import annotations
-
 import json
 import math
 

@@ -1,8 +1,6 @@
 """Geometry of the gap against known answers: lobes, edges of bores, turning frames, supply over time; and what a case
 makes of it: numbers of tables A.1 and A.2, faults, the plan."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace

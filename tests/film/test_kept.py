@@ -1,7 +1,5 @@
 """Tables of films are kept on disk, found by what they follow from, and made again if a file is missing or damaged."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace

@@ -1,7 +1,5 @@
 """Roots and summits of parabolas whose curvature is round-off."""
 
-from __future__ import annotations
-
 import math
 from fractions import Fraction
 

@@ -1,7 +1,5 @@
 """A journal pressed into an elastic shell: all films keep a gap by one rule, cells settle in it, runs go on."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Ends that let out a share of the flow of open ends: closed forms, limits, and the flow that defines the share."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

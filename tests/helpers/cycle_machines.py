@@ -1,8 +1,6 @@
 """Machines whose limit cycles are tested: the rigid rotor in short bearings without supply, in the numbers of its
 cycles, and in short films a floating ring, a turbocharger and a cartridge."""
 
-from __future__ import annotations
-
 import math
 import tomllib
 from functools import cache

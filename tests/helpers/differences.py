@@ -1,7 +1,5 @@
 """Derivatives by differences, which others are held to."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

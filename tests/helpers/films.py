@@ -1,7 +1,5 @@
 """Bearings and films for the film tests: table 4.1 (B 20 mm, D 25 mm, C 40 um, 10 mPa s) and what departs from it."""
 
-from __future__ import annotations
-
 import functools
 import math
 from dataclasses import replace

@@ -1,8 +1,6 @@
 """Oil that a film took in during a run, from the state of the run; and the flows of oil by where they begin, in plain
 form."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from frbcli.arrays import Array

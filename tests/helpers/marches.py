@@ -1,7 +1,5 @@
 """Marches of rotors without films, and in short ones, for the tests of the time loop."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

@@ -1,7 +1,5 @@
 """All options of the commands by which results are written, from the code, and a quick call for each."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import click

@@ -1,7 +1,5 @@
 """Plain bearings between axial grooves, and the printed tables of their sheets."""
 
-from __future__ import annotations
-
 import math
 
 from paths import rows_of
@@ -27,7 +25,7 @@ OMEGA = 2.0 * math.pi * 50.0
 
 
 def printed(name: str) -> list[Row]:
-    return [{key: float(value) for key, value in row.items()} for row in rows_of(name)]
+    return [{key: float(value) for key, value in row.items() if value} for row in rows_of(name)]
 
 
 def grooves(count: int, position: float, opening: float) -> str:

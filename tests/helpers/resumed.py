@@ -1,7 +1,5 @@
 """Runs that are interrupted and go on: they are those in one piece."""
 
-from __future__ import annotations
-
 import signal
 from collections.abc import Callable
 from pathlib import Path

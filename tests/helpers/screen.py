@@ -1,7 +1,5 @@
 """What a person at a terminal sees of a command, with the moments at which it changes."""
 
-from __future__ import annotations
-
 import os
 import pty
 import re

@@ -1,7 +1,5 @@
 """Runs made up from formulas, so that their events are known: a Jeffcott rotor as a run-up shows it."""
 
-from __future__ import annotations
-
 import io
 from dataclasses import dataclass, field
 from functools import cache

@@ -1,7 +1,5 @@
 """Films on volumes for the tests, with the motions and laws of film-forces-all.csv, of an independent program."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A small package with kernels of its own and the program's compiler, in processes of their own."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

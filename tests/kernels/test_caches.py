@@ -1,7 +1,5 @@
 """Kernels on disk: what is damaged is compiled again, what others can write is not read, a full disk stops nothing."""
 
-from __future__ import annotations
-
 import os
 import pickle
 import resource

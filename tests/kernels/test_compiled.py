@@ -1,7 +1,5 @@
 """Kernels are compiled once and kept, follow all their sources, and who waits for them is told."""
 
-from __future__ import annotations
-
 import ast
 import gc
 import os

@@ -1,7 +1,5 @@
 """Private names of numba and matplotlib that frb reaches for: whether they are there, and what happens without them."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

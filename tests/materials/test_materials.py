@@ -1,7 +1,5 @@
 """Oils and solids by name: figures of their sources, the laws through them, and their keys in a case."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

@@ -3,8 +3,6 @@
 `hostile(kind, seed, base)` makes one of them; `KINDS` names the ways. The same seed makes the same file.
 """
 
-from __future__ import annotations
-
 import io
 import json
 import random

@@ -4,8 +4,6 @@
 a line of JSON for each file: its codes, faults, seconds of CPU time and MB of memory beyond those before.
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 import json

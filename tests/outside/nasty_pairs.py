@@ -4,8 +4,6 @@
 time, and what is bad about it. A run that `frb check` expects to take long is not begun.
 """
 
-from __future__ import annotations
-
 import contextlib
 import functools
 import io

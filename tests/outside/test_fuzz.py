@@ -4,8 +4,6 @@ Some hundred mutations run with the ordinary tests; `FRB_MUTATIONS=10000 pytest 
 runs more of them.
 """
 
-from __future__ import annotations
-
 import os
 import random
 import re

@@ -1,12 +1,6 @@
 """Hostile run files: each is refused with one message, or read by all commands, in little time and memory."""
 
-from __future__ import annotations
-
 import json
-import os
-import resource
-import subprocess
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -14,8 +8,7 @@ import numpy as np
 import pytest
 from hostile_runs import KINDS
 from hostile_worker import SETTINGS
-from nights import seeds_tonight
-from paths import ROOT
+from nights import printed, seeds_tonight
 from synthetic_run import Rotor, signals
 
 from frbcli.case.reading.load import load_case
@@ -24,7 +17,6 @@ from frbcli.runs.run import runup
 
 LONGEST_CPU_s = 10.0
 MOST_MB = 500.0
-BATCH_s = 1800.0  # of the clock, for what hangs: what takes long is told by its CPU time
 GATE, SEEDS, NIGHTS = 1, 32, 16  # files of each kind: of every change, and in so many nights
 # What broke the summary once: times of 1e-300 s, a whirl ratio of 1e300, a clearance that changed before the run, a
 # legend of 30 films beside a low panel.
@@ -60,19 +52,10 @@ def bases(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def limited() -> None:
-    resource.setrlimit(resource.RLIMIT_DATA, (4 * 1024**3, 4 * 1024**3))
-
-
 def tried(folder: Path, commands: str, names: Sequence[str]) -> None:
     """Assert that no file of these breaks a command, or takes it more time or memory than it may."""
-    worker = Path(__file__).with_name("hostile_worker.py")
-    words = [sys.executable, "-W", "error", str(worker), str(folder), commands, *names]
-    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
-    done = subprocess.run(words, capture_output=True, text=True, timeout=BATCH_s, check=False, preexec_fn=limited,
-                          env=os.environ | {"PYTHONPATH": path, "MPLBACKEND": "Agg"})  # fmt: skip
-    said = [json.loads(line) for line in done.stdout.splitlines()]
-    assert done.returncode == 0, f"after {said[-1:]}: {done.returncode}\n{done.stderr[-3000:]}"
+    worker = str(Path(__file__).with_name("hostile_worker.py"))
+    said = [json.loads(line) for line in printed(worker, str(folder), commands, *names, limited=True)]
     results = [line for line in said if "codes" in line]
     assert len(results) == len(names)
     bad = [line for line in results if line["bad"] or line["cpu_s"] > LONGEST_CPU_s or line["mb"] > MOST_MB]

@@ -1,18 +1,13 @@
 """What reads a run needs no more memory for a long run than for a short one."""
 
-from __future__ import annotations
-
 import json
-import os
-import subprocess
-import sys
 import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import pytest
-from paths import ROOT
+from nights import printed
 
 from frbcli.errors import RunFileError
 from frbcli.results.store import Header, RunWriter, read_run
@@ -56,16 +51,11 @@ def write_run(path: Path, samples: int) -> Path:
 def measured_mb(folder: Path, samples: int, commands: Sequence[list[str]]) -> dict[str, float]:
     """Memory of each command beyond that of a short run, in a process of its own."""
     small, big = write_run(folder / "small.h5", 20_000), write_run(folder / "big.h5", samples)
-    path = os.pathsep.join([str(ROOT), str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")])
     found = {}
     for words in commands:
         words = [word.replace("OUT", str(folder / "out")) for word in words]
-        done = subprocess.run(
-            [sys.executable, "-c", textwrap.dedent(MEASURED), small, big, json.dumps(words)],
-            capture_output=True, text=True, check=False, env=os.environ | {"PYTHONPATH": path, "MPLBACKEND": "Agg"},
-        )  # fmt: skip
-        assert done.returncode == 0, done.stderr
-        found[" ".join(words)] = float(done.stdout)
+        (beyond,) = printed("-c", textwrap.dedent(MEASURED), str(small), str(big), json.dumps(words))
+        found[" ".join(words)] = float(beyond)
     return found
 
 
@@ -101,11 +91,5 @@ def test_a_run_of_millions_of_samples_takes_little_memory(tmp_path: Path) -> Non
             assert code == 0, told
             print(peak_mb())
         """
-        path = os.pathsep.join([str(ROOT), str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")])
-        done = subprocess.run(
-            [sys.executable, "-c", textwrap.dedent(code)],
-            capture_output=True, text=True, check=False, env=os.environ | {"PYTHONPATH": path},
-        )  # fmt: skip
-        assert done.returncode == 0, done.stderr
-        runs[seconds] = float(done.stdout.splitlines()[-1])
+        runs[seconds] = float(printed("-c", textwrap.dedent(code))[-1])
     assert runs[320] < max(300.0, runs[10] + 120.0), runs

@@ -1,18 +1,11 @@
 """Pairs of nasty values in every command that takes a case: each is done, refused, or ended early with a reason."""
 
-from __future__ import annotations
-
 import json
-import os
-import resource
-import subprocess
-import sys
 from pathlib import Path
 
 import nasty_pairs
 import pytest
-from nights import seeds_tonight
-from paths import ROOT
+from nights import printed, seeds_tonight
 
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import COMMANDS
@@ -22,26 +15,14 @@ from frbcli.scene.gate.rule import BEARING, CYCLES, ROTATION, RUN, STABILITY, WH
 from frbcli.scene.planning.plan import make_plan
 
 PAIRS, INPUTS, NIGHTS = 384, 48, 8  # two in a night to each command, one to each, and of surfaces one
-BATCH_s = 1800.0
 SURFACES = 200  # cases with nasty values of contact, free gas, limited flow and baths
 SEEDS = range(nasty_pairs.SURFACES, nasty_pairs.SURFACES + SURFACES)
 ANALYSES = RUN, ROTATION, WHIRL, BEARING, STABILITY, CYCLES
-MEMORY = 4 * 1024**3
-
-
-def limited() -> None:
-    resource.setrlimit(resource.RLIMIT_DATA, (MEMORY, MEMORY))
 
 
 def tried(folder: Path, seeds: range) -> None:
-    worker = Path(nasty_pairs.__file__)
-    path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
-    done = subprocess.run(
-        [sys.executable, "-W", "error", str(worker), str(folder), *map(str, seeds)], capture_output=True, text=True,
-        timeout=BATCH_s, check=False, preexec_fn=limited, env=os.environ | {"PYTHONPATH": path, "MPLBACKEND": "Agg"},
-    )  # fmt: skip
-    results = [json.loads(line) for line in done.stdout.splitlines()]
-    assert done.returncode == 0, f"after {results[-1:]}: {done.returncode}\n{done.stderr[-3000:]}"
+    lines = printed(nasty_pairs.__file__, str(folder), *map(str, seeds), limited=True)
+    results = [json.loads(line) for line in lines]
     assert [result["seed"] for result in results] == list(seeds)
     bad = [result for result in results if result["bad"]]
     assert not bad, "\n\n".join(f"{result['words']}\n{result['bad']}" for result in bad)

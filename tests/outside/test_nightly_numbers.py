@@ -5,8 +5,6 @@ and finite numbers, below 1 GB, within three times its predicted cost or with a 
 runs goes with the ordinary tests; a night tries one of NIGHTS parts of FRB_NUMBERS of them.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import os

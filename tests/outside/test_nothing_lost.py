@@ -4,8 +4,6 @@ What is computed is computed once, and pictures are not drawn: it is about their
 FRB_TRIALS calls.
 """
 
-from __future__ import annotations
-
 import functools
 import importlib
 import json

@@ -1,8 +1,6 @@
 """Random films on cells: the plan holds its target, and the run states its error. Random machines: what a run states of
 its events and slow signals holds what a finer run finds."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -4,8 +4,6 @@
 cells, and writes a line of JSON for each: expected, true and stated error of the eccentricities.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import random

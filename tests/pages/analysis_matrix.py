@@ -3,8 +3,6 @@
 Each cell asks the gate that the analysis itself passes, with a case that has the film or feature.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 

@@ -1,7 +1,5 @@
 """Writes docs/case-file.md from the JSON Schema of a case: `cd tests && python -m pages.case_reference`."""
 
-from __future__ import annotations
-
 import re
 from itertools import groupby
 from typing import Any

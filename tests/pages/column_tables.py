@@ -3,8 +3,6 @@
 A list is below its mark on a page, a comment `<!-- columns: NAME -->`.
 """
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Mapping

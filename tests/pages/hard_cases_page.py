@@ -1,7 +1,5 @@
 """docs/hard-cases.md: `cd tests && python -m pages.hard_cases_page` computes all hard cases and writes it."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 from textwrap import fill

@@ -2,8 +2,6 @@
 minutes for all, and writes cases/hard/references.json.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 import time

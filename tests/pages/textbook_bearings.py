@@ -1,7 +1,5 @@
 """Bearings and dampers of textbooks, against printed tables and closed forms. FORMS take a second, TABLES minutes."""
 
-from __future__ import annotations
-
 import math
 import tomllib
 from functools import partial

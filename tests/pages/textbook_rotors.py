@@ -1,7 +1,5 @@
 """Rotors of textbooks and standards in bearings of given coefficients, against printed figures and closed forms."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Rows of docs/textbooks.md: a figure of a source, and what the program has for it."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass

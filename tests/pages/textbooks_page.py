@@ -1,7 +1,5 @@
 """Writes docs/textbooks.md, figures of textbooks beside the program's: `cd tests && python -m pages.textbooks_page`."""
 
-from __future__ import annotations
-
 import re
 import sys
 from collections.abc import Iterable

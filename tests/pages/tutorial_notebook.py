@@ -3,8 +3,6 @@
 Its case is that of docs/tutorial.md, so that the notebook runs alone wherever it is opened.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import tempfile

@@ -1,7 +1,5 @@
 """A dask cluster of a sweep: nobody else runs code in it, and what goes wrong with it is one clear line."""
 
-from __future__ import annotations
-
 import logging
 import os
 import signal

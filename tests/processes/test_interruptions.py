@@ -1,7 +1,5 @@
 """Processes of frb from outside: signals at any time, disks that are full, window systems that are not there."""
 
-from __future__ import annotations
-
 import gc
 import os
 import resource

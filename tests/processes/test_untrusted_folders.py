@@ -1,7 +1,5 @@
 """No file of the current folder is a setting, a module or a program of frb, and none of the home that others write."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -5,8 +5,6 @@ r = Omega / w (Nicholas, Gunter and Allaire, "Effect of residual shaft bow on un
 single mass flexible rotor", J. Eng. Power 98, 1976); W = x + i y, and an unbalance of phase 0 points to y at angle 0.
 """
 
-from __future__ import annotations
-
 import cmath
 import math
 from pathlib import Path
@@ -20,6 +18,7 @@ import frbcli
 from frbcli.arrays import Array
 from frbcli.case.reading.load import case_from_dict, load_case
 from frbcli.linear.response import Response, response
+from frbcli.results.store import Run
 from frbcli.rotor.assembly import held_rotor
 from frbcli.scene.machine.rotor import make_rotor
 
@@ -73,7 +72,7 @@ def test_internal_damping_does_not_see_a_bow_that_turns_with_it() -> None:
     np.testing.assert_allclose(damped, plain, rtol=1e-8)
 
 
-def run_at(case: frbcli.Case, speed_Hz: float, path: Path, *settings: str) -> frbcli.Run:
+def run_at(case: frbcli.Case, speed_Hz: float, path: Path, *settings: str) -> Run:
     course = {"speed": {"from": f"{speed_Hz!r} Hz", "to": f"{speed_Hz!r} Hz", "duration": "0.4 s"}}
     return frbcli.runup(case.with_settings(course, "accuracy.tolerance=1e-8", *settings), path)
 

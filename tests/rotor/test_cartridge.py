@@ -1,7 +1,5 @@
 """Cartridges: one rigid ring over two journals, against closed forms, limits and two rings of their own."""
 
-from __future__ import annotations
-
 import math
 import re
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """A blade that is lost during a run: closed forms of linear rotors, and films that come to the same orbit."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from itertools import pairwise
@@ -20,6 +18,7 @@ from frbcli.arrays import Array, Complex
 from frbcli.case.reading.load import case_from_dict, load_case
 from frbcli.errors import InputError
 from frbcli.linear.response import response
+from frbcli.results.store import Run
 from frbcli.rotor.assembly import LinearRotor
 from frbcli.scene.changes import after_losses, case_at
 from frbcli.scene.machine.rotor import make_rotor
@@ -41,7 +40,7 @@ def jeffcott(low: float, high: float, **rotor: object) -> frbcli.Case:
     return case_from_dict({**tables, "accuracy": {"tolerance": 1e-9, "steps_per_revolution": 400}}, "jeffcott")
 
 
-def disk(run: frbcli.Run, name: str = "disk") -> Complex:
+def disk(run: Run, name: str = "disk") -> Complex:
     return np.asarray(run[f"{name}_x_m"] + 1j * run[f"{name}_y_m"])
 
 

@@ -1,7 +1,5 @@
 """Pins of semi-floating rings: free turning within the play, rest against the pin, rebound, and a pin without play."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Perturbed round-off, and the order of modes and shapes, which does not follow it."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Floating rings whose films follow their tilt: closed forms, balances, limits, and runs beside eigenvalues."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

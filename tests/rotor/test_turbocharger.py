@@ -1,7 +1,5 @@
 """Turbocharger rotors: natural frequencies, the reduced rotor as a whole, and floating rings."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace
@@ -10,8 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.linalg import expm
 from scipy.optimize import brentq
+from test_beam import transfer
 
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.reading.load import case_from_dict, load_case
@@ -23,6 +21,7 @@ from frbcli.linear.modes import direct_springs, film_springs, natural_modes
 from frbcli.linear.stability_point import eigenvalues
 from frbcli.plot.machine.modes import modes_figure
 from frbcli.rotor.assembly import Body, LinearRotor, Link, assembled, jeffcott_rotor, point_mass, without_spins
+from frbcli.rotor.beam import BeamSection
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.turbocharger import shaft_of
 
@@ -43,7 +42,7 @@ def exact_whirl(case: Case, spring: float, speed_Hz: float, near_Hz: float) -> f
     places = [a for a, b in zip(places, [*places[1:], math.inf], strict=True) if b - a > 1e-9]
 
     def determinant(omega: float) -> float:
-        transfer = np.eye(4)
+        whole = np.eye(4)
         for place, following in zip(places, [*places[1:], None], strict=True):
             station = np.eye(4)
             for disk in case.disks:
@@ -53,20 +52,13 @@ def exact_whirl(case: Case, spring: float, speed_Hz: float, near_Hz: float) -> f
             for bearing in case.bearings:
                 if math.isclose(bearing.position or 0.0, place, abs_tol=1e-9):
                     station[3, 0] += spring
-            transfer = station @ transfer
+            whole = station @ whole
             if following is None:
                 break
             part = case.shaft[int(np.searchsorted(ends, 0.5 * (place + following))) - 1]
-            area, moment = math.pi / 4 * part.diameter**2, math.pi / 64 * part.diameter**4
-            nu = part.poisson_ratio
-            shear = 6 * (1 + nu) / (7 + 6 * nu) * area * part.youngs_modulus / (2 * (1 + nu))
-            rates = np.zeros((4, 4))
-            rates[0, 1], rates[2, 3] = 1.0, -1.0
-            rates[0, 3], rates[1, 2] = 1 / shear, 1 / (part.youngs_modulus * moment)
-            rates[2, 1] = -part.density * moment * (omega**2 - 2 * spin * omega)
-            rates[3, 0] = -part.density * area * omega**2
-            transfer = expm(rates * (following - place)) @ transfer
-        return float(np.linalg.det(transfer[2:, :2]))
+            material = part.density, part.youngs_modulus, part.poisson_ratio
+            whole = transfer(BeamSection(following - place, part.diameter, 0.0, *material), omega, spin) @ whole
+        return float(np.linalg.det(whole[2:, :2]))
 
     root = brentq(determinant, 2 * math.pi * near_Hz * 0.99, 2 * math.pi * near_Hz * 1.01)
     return float(root) / (2 * math.pi)

@@ -1,7 +1,5 @@
 """What is told of the end of a run: the physical cause, and nothing that is set already."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

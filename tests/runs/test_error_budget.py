@@ -1,7 +1,5 @@
 """The errors that a run states, by their parts, and what its second, coarser run says of its events."""
 
-from __future__ import annotations
-
 import json
 import re
 import tracemalloc

@@ -1,7 +1,5 @@
 """What a run records of its films: their signals, in closed form and as at rest, and the films themselves."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -5,8 +5,6 @@ threshold of stability. A whirl that grows is seen later than that: its amplitud
 rate. So a small whirl is followed from the start, and the moment is that at which it neither decays nor grows.
 """
 
-from __future__ import annotations
-
 import math
 import tomllib
 from pathlib import Path

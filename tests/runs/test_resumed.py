@@ -1,8 +1,6 @@
 """Runs of machines that tilt, move along their axis or drive themselves: interrupted, or killed at random times, they
 are those in one piece."""
 
-from __future__ import annotations
-
 import multiprocessing
 import random
 import signal

@@ -1,7 +1,5 @@
 """Runs of rough bearings: from rest on the shell to the film and back, their energy, events and resume."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 

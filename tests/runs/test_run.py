@@ -1,7 +1,5 @@
 """Run-up and run-down as a library: what a run holds, how it ends, how a broken one goes on."""
 
-from __future__ import annotations
-
 import math
 import signal
 import threading

@@ -1,7 +1,5 @@
 """Nothing computed is lost: runs that were interrupted, rows that are finished, files that cannot be written."""
 
-from __future__ import annotations
-
 import contextlib
 import errno
 import io

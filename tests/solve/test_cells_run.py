@@ -1,7 +1,5 @@
 """Run-ups on films with cells: oil and gas are kept, pauses change nothing, limits are those of films without cells."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Channels that couple the films of a ring: oil, networks computed by hand, limits, derivatives."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Clearances that change during a run: it ends where the new one belongs, keeps its oil, and says what it cannot do."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

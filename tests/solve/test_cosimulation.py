@@ -1,7 +1,5 @@
 """Couplings of rotor and films (chapter 5): how they approach each other, and what they cost."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A rotor whose speed is free: closed form of J omega' = T - c omega, and refusals."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -4,8 +4,6 @@ Films with a groove instead of bores look the same however their rings have turn
 again from the recorded motion alone. Meshes are coarse: what is checked holds on any mesh.
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,8 +1,6 @@
 """The time loop against exact solutions: order of every method, error control, rotors of any size, several films; and
 its course: steps, buffers and output, energy, contact, standstill and reversal."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 

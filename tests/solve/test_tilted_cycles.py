@@ -1,7 +1,5 @@
 """Limit cycles of machines that tilt, and the conical whirls of their run-ups: small motions are those of stability."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

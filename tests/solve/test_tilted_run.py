@@ -1,7 +1,5 @@
 """Runs in films that follow the tilt of the journals: limits, growth of small motions, contact at an end."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

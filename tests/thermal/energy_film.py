@@ -9,8 +9,6 @@ Where the pressure would fall below zero it is zero (Reynolds' condition by proj
 oil on without warming it.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

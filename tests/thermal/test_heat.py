@@ -1,7 +1,5 @@
 """Steady heat: the balance of films, rings and walls, its limits, and machines that are warm."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

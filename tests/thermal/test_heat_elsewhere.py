@@ -1,7 +1,5 @@
 """Heat of squeeze film dampers, of journals along a given motion, and of thrust bearings, against closed forms."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Kernels of the balance of heat against their plain forms."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from test_heat import ring_case

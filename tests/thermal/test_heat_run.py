@@ -1,7 +1,5 @@
 """Heat in runs: its balance, where a run settles, what films on cells and clearances make of it, and how it is told."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

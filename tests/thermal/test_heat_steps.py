@@ -1,7 +1,5 @@
 """Runs with heat whose clearance steps, and those whose films are solved in turn."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

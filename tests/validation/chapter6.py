@@ -1,7 +1,5 @@
 """Run-ups and resting positions of chapter 6 with the penalty and the two-phase model."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import Path

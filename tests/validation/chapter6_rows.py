@@ -3,8 +3,6 @@
 Onsets are those of run-ups: when the whirl exceeds 5 % of the clearance.
 """
 
-from __future__ import annotations
-
 import itertools
 from pathlib import Path
 

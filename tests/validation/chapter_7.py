@@ -6,8 +6,6 @@ runs the studies named, or all, and prints their rows; a run that FOLDER holds i
 that target in place of the one of its case.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace

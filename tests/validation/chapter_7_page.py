@@ -4,8 +4,6 @@ Runs are taken from FOLDER, where `validation.chapter_7` keeps them; a row whose
 what the page says of it stays. So a study can be repeated alone, which takes a minute or ten each.
 """
 
-from __future__ import annotations
-
 import math
 import re
 import sys

@@ -1,7 +1,5 @@
 """Where a journal is in static equilibrium in the two forms of the two-phase model, and how much oil they create."""
 
-from __future__ import annotations
-
 import math
 
 from validation.chapter6 import at_rest, eccentricity

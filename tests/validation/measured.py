@@ -1,7 +1,5 @@
 """What was measured of one row of docs/validation.md, and as which text it is shown."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """The measured side of the validation: one function per figure, each from the public functions of frbcli."""
 
-from __future__ import annotations
-
 import hashlib
 import math
 from collections.abc import Sequence

@@ -4,8 +4,6 @@ validation.validate does not repeat them: this writes what they gave to data/pub
 Runs are kept in FOLDER, where it is given, and taken from it the next time; COUNT: only the first so many of RUNS.
 """
 
-from __future__ import annotations
-
 import csv
 import math
 import sys

@@ -3,8 +3,6 @@
 Runs are kept in FOLDER, where it is given, and taken from it the next time.
 """
 
-from __future__ import annotations
-
 import sys
 import tempfile
 import tomllib

@@ -1,8 +1,6 @@
 """Every cavitation law in its unknown w: what it must be a solution of, its slopes, limits and films; the formulas of
 Bayada and Chupin; and theta(p), which the picture shows."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """The table of the cavitation laws: each has its own plain and compiled form, documents name all, users add theirs."""
 
-from __future__ import annotations
-
 import re
 import runpy
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The edge of the cavity within cells, also of clipped films: derivatives, places of the cells, Reynolds' own edge."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

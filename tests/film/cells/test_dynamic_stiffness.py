@@ -1,7 +1,5 @@
 """Films that keep oil, linearised with its memory: against the settled film, the direct solution, and the time step."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

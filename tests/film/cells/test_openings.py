@@ -1,8 +1,6 @@
 """Bores of the size of a cell, whose flows, forces and areas are those of their true shape wherever they lie; and slots
 along a part of the width, against pockets, symmetries and a closed form."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The film on finite volumes against an independent, grid-refined program, for every cavitation model; convergence."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import replace

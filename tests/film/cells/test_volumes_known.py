@@ -1,7 +1,5 @@
 """Films on volumes against answers that are known otherwise: fronts in one dimension, symmetry, scaling, limits."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Films on volumes through time: the squeeze test of section 4.2.2.2, oil kept over a whirl, orders, cost."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Films of the rigid rotor whose supply gives a flow at the most."""
 
-from __future__ import annotations
-
 import pytest
 
 from frbcli import load_case

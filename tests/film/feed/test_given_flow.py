@@ -1,7 +1,5 @@
 """Films whose supply gives a flow at most: steady, linearised with the filling of the line, and along a motion."""
 
-from __future__ import annotations
-
 import math
 
 import fed_films

@@ -1,7 +1,5 @@
 """Runs with films whose supply gives a flow at the most: its balance, where they settle, and films at a pressure."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

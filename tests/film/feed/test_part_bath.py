@@ -1,7 +1,5 @@
 """Ends that lie in a bath up to a level: between free to air and an oil bath, and mirror images."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Oil with bubbles and dissolved gas: the law, how gas is carried and kept, films at rest and moved, linear films."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import astuple, replace
 

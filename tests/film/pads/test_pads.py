@@ -1,8 +1,6 @@
 """Films on pads: closed forms, derivatives, balances, symmetries, their table over the gap, and tapered-land bearings
 against an independent finite-volume program."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

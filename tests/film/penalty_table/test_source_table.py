@@ -1,7 +1,5 @@
 """Films whose law makes oil, tabulated: against the solver for all films, known limits, and runs on cells."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from functools import partial

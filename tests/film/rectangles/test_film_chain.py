@@ -1,8 +1,6 @@
 """Films between axial grooves and their modes: against the plain solve, a library of finite elements, the independent
 program, and what symmetry says."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

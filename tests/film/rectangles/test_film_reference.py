@@ -2,8 +2,6 @@
 
 Their forces are those of it to 0.3 %, see tests/docs/test_validation.py."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

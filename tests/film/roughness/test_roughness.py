@@ -1,7 +1,5 @@
 """Rough surfaces: flow and shear of films between them by their published factors, and summits that meet and rub."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Films whose journal tilts, on cells: forces, moments, their derivatives, closed forms, symmetries, lands and cuts."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The compiled balances and loads of films whose journal tilts, against the plain ones and against differences."""
 
-from __future__ import annotations
-
 from dataclasses import astuple, replace
 from functools import partial
 
