@@ -157,7 +157,9 @@ class SpringElement(MachineElement):
         return self.nodes[0]
 
     def parts(self, site: Site) -> Parts:
-        given, link = self.given, Link(*self.nodes, equal_places(self.nodes[0], site))
+        ends = [equal_places(node, site) for node in self.nodes if node != GROUND]
+        count = 1.0 if any(node.startswith("disk") for node in self.nodes) else max(ends)
+        given, link = self.given, Link(*self.nodes, count)
         if not given.linear:
             law = given.own_law if given.law else SpringForce(given)
             signal = law.quantity or ("stop_force" if given.gap else "spring_force")

@@ -205,16 +205,34 @@ def test_friction_against_the_motion_of_the_centre_loses_the_work_that_it_does()
     assert energy[-1] < 0.99 * energy[0]
 
 
-def test_a_spring_between_two_places_acts_on_both() -> None:
+@pytest.mark.parametrize("ends", [["disk", "journal"], ["journal", "disk"]])
+def test_a_spring_between_two_places_acts_on_both(ends: list[str]) -> None:
     data = {
         "rotor": {"kind": "jeffcott", "mass": "2 kg", "journal_mass": "1 kg", "shaft_stiffness": "1e6 N/m",
                   "unbalance": "0 kg*m", "gravity": "0 m/s^2"},
         "bearing": {"kind": "coefficients", "stiffness": "4e5 N/m"},
-        "spring": [{"between": ["disk", "journal"], "stiffness": "5e5 N/m"}],
+        "spring": [{"between": ends, "stiffness": "5e5 N/m"}],
         "speed": {"from": "100 Hz", "to": "100 Hz", "duration": "0.2 s"},
     }  # fmt: skip
     both = stability(case_from_dict(data, "between"), [100.0]).points[0].eigenvalues
     data["rotor"]["shaft_stiffness"] = "1.5e6 N/m"  # type: ignore[index]
+    del data["spring"]
+    stiffer = stability(case_from_dict(data, "stiffer"), [100.0]).points[0].eigenvalues
+    np.testing.assert_allclose(np.sort(both.imag), np.sort(stiffer.imag), rtol=1e-9)
+
+
+@pytest.mark.parametrize("ends", [["journal", "housing"], ["housing", "journal"]])
+def test_springs_of_journals_are_two_from_either_end(ends: list[str]) -> None:
+    """In parallel to both bearings, between the journals and the housing that carries these."""
+    data = {
+        "rotor": {"kind": "rigid", "mass": "2 kg", "gravity": "0 m/s^2"},
+        "bearing": {"kind": "coefficients", "stiffness": "4e5 N/m"},
+        "housing": {"mass": "3 kg", "mounts": [{"stiffness": "2e6 N/m"}]},
+        "spring": [{"between": ends, "stiffness": "1e5 N/m"}],
+        "speed": {"from": "100 Hz", "to": "100 Hz", "duration": "0.2 s"},
+    }  # fmt: skip
+    both = stability(case_from_dict(data, "between"), [100.0]).points[0].eigenvalues
+    data["bearing"]["stiffness"] = "5e5 N/m"  # type: ignore[index]
     del data["spring"]
     stiffer = stability(case_from_dict(data, "stiffer"), [100.0]).points[0].eigenvalues
     np.testing.assert_allclose(np.sort(both.imag), np.sort(stiffer.imag), rtol=1e-9)
