@@ -422,7 +422,7 @@ class BallBearingElement(MachineElement):
             left = row_in_tilt(both[0], -0.5 * distance, sense, float(omega))
             right = row_in_tilt(both[1], 0.5 * distance, -sense, float(omega))
             force, moment = np.add(left, right)
-            matrix[0, 3] = matrix[3, 0] = force  # tilt_y is the slope of x, tilt_x that of -y
+            matrix[0, 3] = matrix[3, 0] = force  # tilt_y is the slope of x, tilt_x of -y
             matrix[1, 2] = matrix[2, 1] = -force
             matrix[TILTED, TILTED] = moment
         return LinearPart(speeds, stiffness, damping, np.zeros_like(damping))
