@@ -283,7 +283,7 @@ class WhirlSpan:
 
 
 def whirls(events: Sequence[Mapping[str, Any]]) -> list[WhirlSpan]:
-    """All whirls of a run in the order in which they begin; those of a film end in this order, too."""
+    """All whirls of a run in the order in which they begin; whirls of a film end in this order, too."""
     spans: list[WhirlSpan] = []
     for event in with_whirl_names(events):
         film = str(event.get("film") or event.get("point") or "")

@@ -95,17 +95,19 @@ class Input(Reader):
 
     def read(self, given: object) -> float | OverTime:
         """The SI value or table. Raises ValueFault."""
-        if isinstance(given, OverTime):
-            return self._checked(given.source, given.time, given.x)
-        if isinstance(given, dict):
-            if not {"time", "x"} <= given.keys() <= {"time", "x", "source"}:
-                raise ValueFault("is neither a quantity nor a table over time.", self.remedy)
-            return self._checked(str(given.get("source", "")), *(_numbers(given[key]) for key in ("time", "x")))
-        if not isinstance(given, list | tuple):
-            return self.quantity.read(given)
-        if (columns := pairs(given)) is None:
-            raise ValueFault("is no list of times with values.", self.remedy)
-        return self._checked("", [quantity(time, "s") for time in columns[0]], [*map(self._one, columns[1])])
+        match given:
+            case OverTime():
+                return self._checked(given.source, given.time, given.x)
+            case dict():
+                if not {"time", "x"} <= given.keys() <= {"time", "x", "source"}:
+                    raise ValueFault("is neither a quantity nor a table over time.", self.remedy)
+                return self._checked(str(given.get("source", "")), *(_numbers(given[key]) for key in ("time", "x")))
+            case list() | tuple():
+                if (columns := pairs(given)) is None:
+                    raise ValueFault("is no list of times with values.", self.remedy)
+                return self._checked("", [quantity(time, "s") for time in columns[0]], [*map(self._one, columns[1])])
+            case _:
+                return self.quantity.read(given)
 
     def _one(self, given: object) -> float:
         try:

@@ -55,9 +55,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
     loads = findings(case)
     _show_findings(case, loads, terminal)
     doubts = _show_remarks(case, terminal)
-    if everything:
-        terminal.table("values", ("key", "SI", "reads"), _values(listed))
-    bare = _show_bare(listed, terminal)
+    _show_values(listed, everything, terminal)
     films = operating_points(case)
     _show(films, terminal)
     kinematic = case.motion is not None and (case.given_rotor is None or case.given_speed is None)
@@ -85,12 +83,12 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
             "steps": cost.steps,
             "film_solves": cost.film_solves,
         }
-    terminal.table("plan", ("choice", "value", "reason"), [(d.choice, d.value, d.reason) for d in (*decisions, *lines)])
+    _show_plan((*decisions, *lines), terminal)
     if not kinematic:  # after the plan, which explains a refusal
         require_affordable(case, plan, cost)
     heat = None if kinematic or case.heat is None else _heat(case, terminal)
     terminal.emit(
-        _document(case, listed, bare, decisions)
+        _document(case, listed, decisions)
         | {"findings": _findings_document(case, loads), "remarks": doubts}
         | {"films": documents(FILM_OPERATION, films), "expected": expected}
         | ({} if heat is None else {"thermal": heat})
@@ -103,13 +101,11 @@ def _check_thrust(case: Case, listed: Sequence[ListedValue], everything: bool, t
     from frbcli.scene.gate.static import require_thrust_sheet
     from frbcli.scene.planning.plan import thrust_plan
 
-    if everything:
-        terminal.table("values", ("key", "SI", "reads"), _values(listed))
-    bare = _show_bare(listed, terminal)
+    _show_values(listed, everything, terminal)
     require_thrust_sheet(case)
     plan = thrust_plan(case)
-    terminal.table("plan", ("choice", "value", "reason"), [(d.choice, d.value, d.reason) for d in plan])
-    terminal.emit(_document(case, listed, bare, plan))
+    _show_plan(plan, terminal)
+    terminal.emit(_document(case, listed, plan))
 
 
 def _show_remarks(case: Case, terminal: Terminal) -> tuple[str, ...]:
@@ -126,13 +122,11 @@ def _check_balls(case: Case, listed: Sequence[ListedValue], everything: bool, te
     from frbcli.elements.ball import BallBearingElement
     from frbcli.scene.planning.film_choice import Decision
 
-    if everything:
-        terminal.table("values", ("key", "SI", "reads"), _values(listed))
-    bare = _show_bare(listed, terminal)
+    _show_values(listed, everything, terminal)
     plan = [Decision(*element.line) for element in BallBearingElement.of(case)]
     doubts = _show_remarks(case, terminal)
-    terminal.table("plan", ("choice", "value", "reason"), [(d.choice, d.value, d.reason) for d in plan])
-    terminal.emit(_document(case, listed, bare, plan) | {"remarks": doubts})
+    _show_plan(plan, terminal)
+    terminal.emit(_document(case, listed, plan) | {"remarks": doubts})
 
 
 def _axial(case: Case) -> dict[str, object]:
@@ -144,9 +138,11 @@ def _axial(case: Case) -> dict[str, object]:
     return document(AXIAL, axial_state(case, run_omega(case)))
 
 
-def _document(
-    case: Case, listed: Sequence[ListedValue], bare: Sequence[ListedValue], decisions: Sequence[Decision]
-) -> dict[str, object]:
+def _show_plan(plan: Sequence[Decision], terminal: Terminal) -> None:
+    terminal.table("plan", ("choice", "value", "reason"), [(d.choice, d.value, d.reason) for d in plan])
+
+
+def _document(case: Case, listed: Sequence[ListedValue], decisions: Sequence[Decision]) -> dict[str, object]:
     """What the JSON of every case has."""
     return {
         "command": "check",
@@ -154,17 +150,18 @@ def _document(
         "title": case.title,
         "status": "ok",
         "values": _value_documents(listed),
-        "bare_numbers": _value_documents(bare),
+        "bare_numbers": _value_documents([value for value in listed if value.bare]),
         "plan": [asdict(decision) for decision in decisions],
     }
 
 
-def _show_bare(listed: Sequence[ListedValue], terminal: Terminal) -> list[ListedValue]:
-    """The numbers without a unit, and how they were read."""
-    bare = [value for value in listed if value.bare]
-    for value in bare:
-        terminal.sentence(f"Note: {value.key} = {value.value:.12g}: no unit, read as {value.unit}.")
-    return bare
+def _show_values(listed: Sequence[ListedValue], everything: bool, terminal: Terminal) -> None:
+    """All values, where asked for, and the numbers without a unit with how they were read."""
+    if everything:
+        terminal.table("values", ("key", "SI", "reads"), _values(listed))
+    for value in listed:
+        if value.bare:
+            terminal.sentence(f"Note: {value.key} = {value.value:.12g}: no unit, read as {value.unit}.")
 
 
 def _value_documents(values: Sequence[ListedValue]) -> list[dict[str, object]]:
@@ -275,9 +272,7 @@ def _show_findings(case: Case, loads: Findings, terminal: Terminal) -> None:
     from frbcli.scene.machine.turbocharger import shaft_of
 
     if loads.mass is not None:
-        frequencies = ", ".join(f"{frequency:.1f}" for frequency in loads.frequencies_Hz)
-        natural = f"; natural frequencies {loads.supported}: {frequencies} Hz" if frequencies else ""
-        terminal.sentence(f"Rotor of {loads.mass:.4g} kg{natural}.")
+        terminal.sentence(loads.rotor)
         show_reduction(terminal, shaft_of(case).reduction)
     if loads.films:
         terminal.show("static loads, at the top speed", table_of(FILM_LOADS, loads.films))

@@ -36,7 +36,7 @@ SECTIONS = {
 
 
 class Command(click.Command):
-    """A command whose help lists its own options first, then those of SECTIONS."""
+    """A command whose help lists its own options first, then SECTIONS."""
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the options, section by section."""

@@ -375,7 +375,7 @@ def _with_curves(
     maxima: Sequence[ResponsePeak],
     solved: Callable[[Sequence[float]], list[StabilityPoint]],
 ) -> list[StabilityPoint]:
-    """The points of a machine without films including those of a curve around each bounded peak."""
+    """The points of a machine without films, with a curve around each bounded peak."""
     bounded = [peak for peak in maxima if math.isfinite(peak.amplitude)]
     curve = np.unique([peak.omega + abs(peak.pole.imag) * WIDTHS for peak in bounded]) / TURN
     inside = curve[(curve > points[0].speed_Hz) & (curve < points[-1].speed_Hz)]

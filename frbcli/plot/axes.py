@@ -355,7 +355,7 @@ def bearing(
 
 @contextmanager
 def _overlaid(ax: Axes, label: str) -> Iterator[None]:
-    """What is drawn within it has the colours that follow those of the curves before, and names that begin so."""
+    """What is drawn within it has the colours that follow after the curves before, and names that begin so."""
     lines, areas = list(ax.lines), list(ax.collections)
     yield
     drawn = [line for line in ax.lines if line not in lines]

@@ -143,8 +143,7 @@ def _draw_motion(axes: Axes, run: Run) -> None:
 
 
 def _draw_speed(axes: Axes, run: Run) -> None:
-    rings = [name for name in points(run.signals, "ring") if joined("ring_speed", name, "Hz") in run.signals]
-    for name, colour in zip(rings, itertools.cycle((GREY, SKY)), strict=False):
+    for name, colour in zip(_turning(run), itertools.cycle((GREY, SKY)), strict=False):
         label = ", ".join(word for word in ("ring", name) if word)
         axes.plot(*curve(run, run.signal(joined("ring_speed", name, "Hz"))), color=colour, label=label)
     draw_bands(axes, run.error.get("ring_speed_uncertainty_Hz"))

@@ -51,7 +51,7 @@ from frbcli.results.store import Run
 from frbcli.results.write import MARK, PAGE, require_places, write
 from frbcli.runs.header import FILM_SIGNALS, POWER
 from frbcli.runs.second_run import about_certainty, account, grows_late
-from frbcli.scene.machine.findings import Findings, findings
+from frbcli.scene.machine.findings import findings
 from frbcli.scene.planning.plan import make_plan
 from frbcli.units import HERTZ, SpeedUnit
 
@@ -312,19 +312,11 @@ def _machine(run: Run) -> dict[str, Any]:
         "sketch": Markup(sketch),
         "sketch_note": note,
         "films": [(name.replace("_", " "), Markup(drawing)) for name, drawing in film_sketches(case)],
-        "mass": _mass(static),
+        "mass": static.rotor,
         "loads": [_load(each) for each in static.films],
         "values": [(each.key, *each.cells) for each in values(case)],
         "plan": [(each.choice, each.value, each.reason) for each in plan.decisions],
     }
-
-
-def _mass(static: Findings) -> str:
-    if static.mass is None:
-        return ""
-    natural = ", ".join(f"{frequency:.1f}" for frequency in static.frequencies_Hz)
-    suffix = f"; natural frequencies {static.supported}: {natural} Hz" if natural else ""
-    return f"Rotor of {static.mass:.4g} kg{suffix}."
 
 
 def _load(film: Any) -> tuple[str, ...]:

@@ -95,7 +95,7 @@ def stack(
             if number < len(symbols):
                 yield body
             elif housing is None:
-                yield _ground(x, end)
+                yield line(x - 2.0 * WIDE, end, x + 2.0 * WIDE, end, "ground")
         if housing is not None:
             yield line(x, middle + sign * (radius + height(symbols)), x, middle + sign * housing, "spring")
 
@@ -116,10 +116,6 @@ def _dashpot(x: float, start: float, sign: float) -> Iterator[str]:
     yield curve([(x - 0.7 * WIDE, piston), (x + 0.7 * WIDE, piston)], "spring")
     yield curve([(x - WIDE, rim), (x - WIDE, bottom), (x + WIDE, bottom), (x + WIDE, rim)], "spring")
     yield curve([(x, bottom), (x, start + sign * HIGH)], "spring")
-
-
-def _ground(x: float, at: float) -> str:
-    return line(x - 2.0 * WIDE, at, x + 2.0 * WIDE, at, "ground")
 
 
 SYMBOLS: dict[str, Callable[[float, float, float], Iterator[str]]] = {"spring": _spring, "damper": _dashpot}

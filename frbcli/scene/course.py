@@ -34,11 +34,11 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.section_faults import no_inflow
 from frbcli.rotor.assembly import LinearRotor, held_rotor
-from frbcli.rotor.loads import Harmonic, SpeedProfile, Tabulated, speed_profile
+from frbcli.rotor.loads import SpeedProfile, speed_profile
 from frbcli.scene.coupling import coupling_named
 from frbcli.scene.films import film_places, film_section, rings, turning_rings, turns_with_oil
 from frbcli.scene.gate.rule import run_omega
-from frbcli.scene.machine.rotor import element_parts, harmonics_of, make_rotor
+from frbcli.scene.machine.rotor import harmonics_of, make_rotor, tables_of
 from frbcli.scene.machine.turbocharger import shaft_of
 from frbcli.scene.planning.film_choice import Decision, Plan, form_of
 
@@ -229,11 +229,9 @@ CHOICE = "resolution"
 
 def resolution_decisions(case: Case, plan: Plan) -> Iterator[Decision]:
     """How well the steps that are expected at the top speed resolve each load and each input over time."""
-    loads = [load for _, load in element_parts(case).loads]
-    given = [load for load in loads if isinstance(load, Tabulated)]
-    tables = [(load.name, load.times, load.factors(load.times, load.times)) for load in given]
+    tables = [(load.name, load.times, load.factors(load.times, load.times)) for load in tables_of(case)]
     tables += [(each.key, np.array(each.values.time), np.array([each.values.x]).T) for each in inputs_of(case)]
-    harmonics = [load for load in loads if isinstance(load, Harmonic)]
+    harmonics = harmonics_of(case)
     if not (tables or harmonics):
         return
     omega = run_omega(case)

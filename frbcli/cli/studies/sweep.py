@@ -230,13 +230,10 @@ def _progress(shown: Display) -> Callable[[SweepPoint, int, int], None]:
         computed = done - before[0]
         left = (time.monotonic() - began) / computed * (whole - done)
         outcome = point.message or _result(point, shown.speeds)
-        shown.line(f"{done}/{whole}  {left:.0f} s left  {_named(point)}: {outcome}")
+        settings = ", ".join(f"{key}={value}" for key, value in point.settings.items())
+        shown.line(f"{done}/{whole}  {left:.0f} s left  {settings}: {outcome}")
 
     return observe
-
-
-def _named(point: SweepPoint) -> str:
-    return ", ".join(f"{key}={value}" for key, value in point.settings.items())
 
 
 def _result(point: SweepPoint, unit: SpeedUnit) -> str:

@@ -18,7 +18,7 @@ from matplotlib.tri import Triangulation
 from frbcli.elements.collar import pad_of
 from frbcli.film.pad_geometry import MESH
 from frbcli.film.pads import pad_mesh
-from frbcli.linear.sheets.ball import BallSheet, BallState
+from frbcli.linear.sheets.ball import BallSheet
 from frbcli.linear.sheets.bearing import ECCENTRICITY, BearingSheet
 from frbcli.linear.sheets.film_state import FilmState
 from frbcli.linear.sheets.thrust import ThrustSheet, ThrustState
@@ -135,7 +135,7 @@ def ball_figure(sheet: BallSheet) -> Figure:
     """Stiffness and Hertz pressure of the first bearing over the number of which the sheet has several values."""
     states = [state for state in sheet.of(sheet.bearings[0]) if state.stiffness is not None]
     over_load = len({state.speed_Hz for state in states}) == 1 < len(states)
-    along = [_load(state) if over_load else state.speed_Hz for state in states]
+    along = [math.hypot(*state.load) if over_load else state.speed_Hz for state in states]
     name = " ".join(filter(None, ("ball bearing", sheet.bearings[0])))
     with styled():
         figure = new_figure(sheet.case.heading, name, width=9.6, height=4.6)
@@ -152,10 +152,6 @@ def ball_figure(sheet: BallSheet) -> Figure:
             panel.set(xlabel="load in N" if over_load else "rotor speed in Hz", ylabel=label, ylim=(0.0, None))
             panel.legend(loc="lower right" if panel is pressure else "best")
     return figure
-
-
-def _load(state: BallState) -> float:
-    return math.hypot(*state.load)
 
 
 LEVELS = 12

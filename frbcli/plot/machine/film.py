@@ -70,6 +70,7 @@ def film_figure(test: KinematicTest) -> Figure:
 
 def _draw_lines(figure: Any, solved: list[KinematicResult]) -> None:
     fields = [result.field for result in solved if result.field is not None]
+    moved = len({result.displacement for result in solved}) > 1  # the models' journals rest at different places
     cavitates = any(field.fraction.min() < 1.0 for field in fields)  # else its oil fraction is 1 everywhere
     pressure, gap, *oil = figure.subplots(
         3 if cavitates else 2, 1, sharex=True, height_ratios=(2.4, 1.0, 1.3)[: 2 + cavitates]
@@ -81,7 +82,7 @@ def _draw_lines(figure: Any, solved: list[KinematicResult]) -> None:
         for axes in oil:
             axes.plot(*mid_line(field, field.fraction, result.plan.section.far), **look)
         phi, values = _turn(field, field.gap)
-        gap.plot(phi, values, **(look if _moved(solved) else {"color": GREY}))
+        gap.plot(phi, values, **(look if moved else {"color": GREY}))
     if len(solved) > 1:
         pressure.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
     pressure.set(title="along the middle of the film", ylabel="pressure in bar")
@@ -159,11 +160,6 @@ def _turn(field: FilmField, values: Array) -> tuple[Array, Array]:
     phi, values = phi[order] * DEGREES, values[order]
     closed = np.concatenate([[phi[-1] - 360.0], phi, [phi[0] + 360.0]])
     return closed, np.concatenate([values[-1:], values, values[:1]])
-
-
-def _moved(solved: list[KinematicResult]) -> bool:
-    """Whether the models' journals rest at different places."""
-    return len({result.displacement for result in solved}) > 1
 
 
 def kinematic_figure(test: KinematicTest) -> Figure:

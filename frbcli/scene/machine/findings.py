@@ -265,6 +265,13 @@ class Findings:
     films: tuple[FilmLoad, ...]
     tilts: tuple[FilmTilt, ...] = ()
 
+    @property
+    def rotor(self) -> str:
+        """A sentence on the rotor, "" without one."""
+        frequencies = ", ".join(f"{frequency:.1f}" for frequency in self.frequencies_Hz)
+        natural = f"; natural frequencies {self.supported}: {frequencies} Hz" if frequencies else ""
+        return "" if self.mass is None else f"Rotor of {self.mass:.4g} kg{natural}."
+
 
 def findings(case: Case) -> Findings:
     """What is found of a case before a run. Raises InputError if its shaft has no modes."""

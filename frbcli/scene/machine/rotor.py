@@ -82,6 +82,11 @@ def harmonics_of(case: Case) -> tuple[Harmonic, ...]:
     return tuple(load for _, load in element_parts(case).loads if isinstance(load, Harmonic))
 
 
+def tables_of(case: Case) -> tuple[Tabulated, ...]:
+    """The loads of a case that are given over time."""
+    return tuple(load for _, load in element_parts(case).loads if isinstance(load, Tabulated))
+
+
 def stray_load_faults(case: Case) -> Iterator[Fault]:
     """The faults of loads that do not repeat with the revolutions of the rotor."""
     site = site_of(case)
@@ -123,8 +128,7 @@ def span_faults(key: str, named: str, times: Sequence[float] | Array, begin: flo
 
 def table_times(case: Case) -> Array:
     """The times in s of all rows of the tables over time of a case."""
-    tables = (load.times for _, load in element_parts(case).loads if isinstance(load, Tabulated))
-    return np.unique(np.concatenate([np.zeros(0), *tables]))
+    return np.unique(np.concatenate([np.zeros(0), *(load.times for load in tables_of(case))]))
 
 
 def element_forces(

@@ -142,7 +142,8 @@ def _rectangles(case: Case, target: float) -> FilmChoice:
     forms = [film_form(case, film, theory) for film in films]
     form = min(forms, key=MOST_EXPENSIVE_FIRST.index)
     meshes = [_mesh(form, slenderness_of(film), FILM_SHARE * target) for form, film in zip(forms, films, strict=True)]
-    mesh, error = max((mesh for mesh, _ in meshes), key=_size), max(error for _, error in meshes)
+    mesh = max((mesh for mesh, _ in meshes), key=lambda mesh: mesh.axial * mesh.circumferential)
+    error = max(error for _, error in meshes)
     holds_to = SOLVED_HOLDS_TO if form == CHAINS else TABLE_HOLDS_TO
     mesh_why = f"relative error {error:.1g} at an eccentricity of {holds_to:g}"
     if given is not None:
@@ -189,10 +190,6 @@ def _mesh(form: FilmForm, slenderness: float, allowed: float) -> tuple[Mesh, flo
     allowed = max(allowed, {CHAINS: CHAIN_FLOOR, FIELDS: FIELDS_FLOOR}.get(form, 0.0))
     index = next((i for i, error in enumerate(errors) if error <= allowed), len(errors) - 1)
     return meshes[index], errors[index]
-
-
-def _size(mesh: Mesh) -> int:
-    return mesh.axial * mesh.circumferential
 
 
 def _mesh_error(form: FilmForm, mesh: Mesh, slenderness: float) -> float:
