@@ -142,8 +142,7 @@ def sweep(
     if method not in METHODS:
         raise refused("method", method, "is not known.", f"There are: {', '.join(METHODS)}.")
     check_workers(workers)
-    cases = _cases(case, settings)
-    _check_laws(cases, workers)
+    _check_laws(cases := _cases(case, settings), workers)
     folder = Path(directory).absolute()
     runs = folder / RUNS if keep_runs and method == "runup" else None
     _make(runs or folder)
