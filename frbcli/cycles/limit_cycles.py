@@ -347,9 +347,10 @@ def _with_error(machines: StaticMachines, point: SpecialPoint) -> SpecialPoint:
 
 
 def _with_missing(computed: LimitCycles, speeds_Hz: Sequence[float]) -> LimitCycles:
-    """With a note on each speed at which there is no cycle."""
+    """With a note on each speed at which no cycle was found."""
     met = {round(point.speed_Hz, 6) for branch in computed.branches for point in branch.points}
-    missing = [f"No limit cycle at {speed:g} Hz." for speed in speeds_Hz if round(speed, 6) not in met]
+    left = (speed for speed in speeds_Hz if round(speed, 6) not in met)
+    missing = [f"No cycle of those that were followed is at {speed:g} Hz." for speed in left]
     return replace(computed, notes=(*computed.notes, *missing))
 
 

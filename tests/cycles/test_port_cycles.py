@@ -42,6 +42,16 @@ def ball(cage: str) -> list[str]:
     return [*STILL, f'bearing=[{mount}, {{kind = "coefficients", name = "seal", over_speed = {over}}}]']
 
 
+def test_a_branch_that_ends_early_does_not_deny_cycles_beyond() -> None:
+    """As below, with a soft spring: at 138 Hz the rotor whirls at 20 times its length, where no branch was followed."""
+    spring = f'spring=[{{at="journal", cubic="{0.01 * CUBIC} N/m^3"}}]'
+    diagram = frbcli.limit_cycles(
+        frbcli.load_case("seal", [*STILL, spring, "speed.from=105 Hz", "speed.to=140 Hz"]), [138.0]
+    )
+    assert "goes on" in diagram.branches[0].note
+    assert "No cycle of those that were followed is at 138 Hz." in diagram.notes
+
+
 @pytest.mark.parametrize("springs", [1, 2])
 def test_a_cubic_spring_has_the_frequency_of_its_amplitude_in_a_whirl(springs: int) -> None:
     """`seal`: q = C nu across a circle of the radius r, and m nu^2 = 2 (K + c r^2) along it, so that nu = 0.8 Omega;
