@@ -110,8 +110,8 @@ def stability(
     machines = StaticMachines(case, memory=True)
     sweep = _sweep(case, machines, speeds, observe)
     by_speed = {point.speed_Hz: point for point in sweep}
-    found, note = find_threshold(case, machines, sweep) if threshold else (None, NOT_SOUGHT)
-    return Stability(case, tuple(by_speed[speed] for speed in asked), sweep, found, note)
+    limit, note = find_threshold(case, machines, sweep) if threshold else (None, NOT_SOUGHT)
+    return Stability(case, tuple(by_speed[speed] for speed in asked), sweep, limit, note)
 
 
 def threshold_alone(case: Case) -> Stability:

@@ -112,9 +112,9 @@ class _Scanner:
 
     def _takes(self, *tokens: str) -> bool:
         """Whether the next token is one of these, which is then behind."""
-        taken = self.tokens[self.at][0] in tokens
-        self.at += taken
-        return taken
+        is_next = self.tokens[self.at][0] in tokens
+        self.at += is_next
+        return is_next
 
     def _note(self, path: Path) -> None:
         self.lines.setdefault(path, self.tokens[self.at][1])
