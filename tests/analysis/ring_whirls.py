@@ -1,7 +1,5 @@
 """Runs of a floating ring with given whirls."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Events of made-up motions whose moments are known from their formulas."""
 
-from __future__ import annotations
-
 import time
 from dataclasses import asdict, replace
 from pathlib import Path

@@ -4,8 +4,6 @@ The files of tests/data/instruments hold the first lines of exports of one motio
 Hz while the rotor speed rises from 1200 rpm.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """MAT files by two writers: scipy for version 5, h5py in MATLAB's layout for version 7.3. Both are read the same."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Measured motions: read from CSV, WAV and MAT, with the spectra and events of the run that they are made of."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

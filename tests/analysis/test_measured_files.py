@@ -1,8 +1,6 @@
 """Measured files as instruments write them, put together here byte by byte: each is read right, or refused with one
 error that says where."""
 
-from __future__ import annotations
-
 import random
 import struct
 import time as clock

@@ -1,7 +1,5 @@
 """Amplitudes by order of motions whose amplitudes are known, in ramps that smear every spectrum."""
 
-from __future__ import annotations
-
 import tracemalloc
 from dataclasses import dataclass, field
 

@@ -1,7 +1,5 @@
 """Peaks, their prominence and their flanks, against scipy."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.signal import find_peaks, peak_widths

@@ -1,7 +1,5 @@
 """Events of floating rings: whirls of inner and outer films, lock-in, and what is none."""
 
-from __future__ import annotations
-
 from dataclasses import asdict, replace
 
 import numpy as np

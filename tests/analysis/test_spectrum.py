@@ -1,7 +1,5 @@
 """Spectra of motions whose amplitudes and frequencies are known."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from functools import partial

@@ -1,7 +1,5 @@
 """Uncertainties of events by hand: which events of two runs belong together, and what their differences say."""
 
-from __future__ import annotations
-
 from dataclasses import asdict
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Kinematic tests of one film among several: what the journal's test of a machine says is what that film alone says."""
 
-from __future__ import annotations
-
 import pytest
 
 from frbcli import load_case, rotation

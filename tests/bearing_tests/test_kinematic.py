@@ -1,7 +1,5 @@
 """Kinematic tests against known physics and independent reference values (section 4.2.2)."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

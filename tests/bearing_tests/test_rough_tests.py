@@ -1,7 +1,5 @@
 """Rough surfaces in kinematic tests and in small motions about rest: what their summits add to the film."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

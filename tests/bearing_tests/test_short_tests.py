@@ -1,7 +1,5 @@
 """Kinematic tests of the short bearing against its closed forms (Ocvirk, DuBois), and against the film on cells."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -3,8 +3,6 @@
 The films have few cells and steps: what is held is an order, by a margin well above their error.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import replace

@@ -2,8 +2,6 @@
 volumes of another program, 360 x 120 and 180 x 60 cells extrapolated, exact to 1e-4 of the largest force or moment of a
 row."""
 
-from __future__ import annotations
-
 import math
 import re
 

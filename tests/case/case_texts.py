@@ -1,7 +1,5 @@
 """Case files as texts, which the tests of this folder read and damage."""
 
-from __future__ import annotations
-
 import pytest
 
 from frbcli.case.reading.load import load_case_text

@@ -1,7 +1,5 @@
 """The case file: what is read, and what is said about what cannot be read."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -1,7 +1,5 @@
 """What is said about case files and settings that cannot be read."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Cases made and changed in Python: each has one true text, and is what its run is compared by."""
 
-from __future__ import annotations
-
 import copy
 import pickle
 from inspect import isabstract

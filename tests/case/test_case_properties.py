@@ -1,7 +1,5 @@
 """Whatever a file holds: a Case, or an InputError with faults; never anything else."""
 
-from __future__ import annotations
-
 import string
 import tomllib
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """A slip of a unit: what is absurd for a rotor is refused or confirmed, and a number without a unit is told."""
 
-from __future__ import annotations
-
 import json
 import math
 

@@ -1,7 +1,5 @@
 """Mass and inertia of a floating ring from its material, width and diameters."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

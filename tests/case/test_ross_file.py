@@ -1,7 +1,5 @@
 """Rotor files of ROSS: shaft and disks are taken, faults are named, and the case stays whole in itself."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

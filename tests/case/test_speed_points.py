@@ -1,7 +1,5 @@
 """The rotor speed through points, or as it was measured: what follows from them, runs, a tacho, and faults."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What every row of the table of supplies answers, each made of the examples of its keys."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

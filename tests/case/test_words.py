@@ -1,7 +1,5 @@
 """Words, units and names that engineers bring: understood, or told by what is wrong with them."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

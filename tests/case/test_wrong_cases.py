@@ -1,7 +1,5 @@
 """Wrong cases, and analyses that a case cannot have: the rows of tests/data/wrong-cases.toml, each with its faults."""
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """frb check, schema, cases; and how errors leave the command line."""
 
-from __future__ import annotations
-
 import json
 import math
 import subprocess

@@ -1,7 +1,5 @@
 """`frb rotation`, `frb squeeze`, `frb whirl`: JSON keys, exit codes, pictures, 80 columns."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

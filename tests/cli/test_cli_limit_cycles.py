@@ -1,7 +1,5 @@
 """`frb limit-cycles`, and what `frb stability` and `frb runup --explain` tell of limit cycles."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """`frb waterfall`, `frb plot`, `frb export` on a run file."""
 
-from __future__ import annotations
-
 import json
 import re
 from importlib.util import find_spec

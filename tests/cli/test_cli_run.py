@@ -1,7 +1,5 @@
 """`frb runup` and `frb rundown`: exit codes, the JSON document, progress, Ctrl-C, SIGKILL."""
 
-from __future__ import annotations
-
 import json
 import os
 import pty

@@ -1,7 +1,5 @@
 """`frb stability`: JSON, table, picture, exit codes."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

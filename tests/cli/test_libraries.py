@@ -1,7 +1,5 @@
 """What a process of `frb` imports: what it uses, and nothing else."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Options that several commands have are one option; the example in each help can be called; what a shell completes."""
 
-from __future__ import annotations
-
 import os
 import re
 import shlex

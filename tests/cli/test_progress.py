@@ -1,7 +1,5 @@
 """How commands tell how far they are, with the time left, on a terminal and without one; tables of whole words."""
 
-from __future__ import annotations
-
 import re
 import time
 from collections import Counter

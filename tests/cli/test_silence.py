@@ -1,7 +1,5 @@
 """No command is silent for long on a terminal: the clock of the screen is read while work is made slow."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

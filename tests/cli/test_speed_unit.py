@@ -1,7 +1,5 @@
 """Rotor speeds in the unit of the case: all that a user of a case in rpm reads; JSON stays in Hz."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """stdout and stderr that are full, closed, or read by nobody: one line where it can be told, no traceback."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """The motion of a rotor along its axis in a run."""
 
-from __future__ import annotations
-
 import math
 import tomllib
 from pathlib import Path

@@ -3,8 +3,6 @@
 Displacements q are those against the ground, which moves by u = -a / omega^2 with the acceleration a.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from pathlib import Path

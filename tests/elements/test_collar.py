@@ -1,7 +1,5 @@
 """A collar under an axial load: where it rests, how it swings along the axis, and what holds it in tilt."""
 
-from __future__ import annotations
-
 import math
 import re
 from pathlib import Path

@@ -4,8 +4,6 @@ A shell that moves on a circle of radius e c around the centre of a short film, 
 F = -(K + i omega C) e c with K = 2 eta omega R (L/c)^3 e / (1 - e^2)^2 and C = pi eta R (L/c)^3 / (2 (1 - e^2)^1.5).
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

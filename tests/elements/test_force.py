@@ -1,7 +1,5 @@
 """Forces on places of a machine: closed forms, equal ways to say the same, runs against the response, and faults."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

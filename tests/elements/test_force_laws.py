@@ -1,7 +1,5 @@
 """Force laws that are added from Python: against springs of the program, closed forms, and what is refused."""
 
-from __future__ import annotations
-
 import math
 import re
 import runpy

@@ -4,8 +4,6 @@ With impedances Z = K + s C + s^2 M, links in series have 1 / Z = 1 / Z_1 + 1 / 
 bearing, and one housing.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from pathlib import Path

@@ -4,8 +4,6 @@ Two equal masses m, each on a spring k to the ground and joined by another, k_c,
 1/sqrt(2 m), and (k + 2 k_c) / m, moving against each other.
 """
 
-from __future__ import annotations
-
 import copy
 import json
 import math

@@ -1,7 +1,5 @@
 """Magnetic pull: closed forms of rigid and Jeffcott rotor, static instability, faults."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Springs and stops: closed forms of free and forced vibrations, rest, rub, and what their law says of itself."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

@@ -4,8 +4,6 @@ With impedances Z = K + s C + s^2 M, links in series have 1 / Z = 1 / Z_1 + 1 / 
 Z_1 + Z_2; a symmetric rotor has two of each bearing and support.
 """
 
-from __future__ import annotations
-
 import math
 import tomllib
 from pathlib import Path

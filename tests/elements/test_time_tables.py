@@ -1,7 +1,5 @@
 """Forces from tables over time: exact motions, resume, files of each kind, and faults with their rows."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

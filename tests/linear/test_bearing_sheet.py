@@ -1,7 +1,5 @@
 """The sheet of a bearing against printed tables, closed forms, and the program's own run-up films."""
 
-from __future__ import annotations
-
 import csv
 import json
 import math

@@ -1,7 +1,5 @@
 """Machines at rest whose oil carries free gas: sheets against rotation, thresholds against Peeken's model."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

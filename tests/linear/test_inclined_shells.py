@@ -1,8 +1,6 @@
 """Machines at rest whose shells are not in line and whose journals keep their direction: sheets, stability, what is
 refused."""
 
-from __future__ import annotations
-
 import math
 
 import pytest

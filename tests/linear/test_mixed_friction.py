@@ -1,7 +1,5 @@
 """Rough bearings at rest: standing on their summits, mixed friction, and the film alone."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 

@@ -2,8 +2,6 @@
 and a run rests where the sheet has it. The force of summits grows by e over a third of a roughness, so that share and
 friction tell small errors of the place."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

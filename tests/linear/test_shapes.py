@@ -1,7 +1,5 @@
 """Critical speed maps, damped modes and their pictures, and moving orbits, against closed forms and each other."""
 
-from __future__ import annotations
-
 import math
 import os
 import re

@@ -1,7 +1,5 @@
 """`stability` against an independent program, closed forms and limits."""
 
-from __future__ import annotations
-
 import csv
 import math
 from dataclasses import replace

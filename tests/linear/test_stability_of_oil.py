@@ -1,7 +1,5 @@
 """Stability of films that keep oil: against shooting on the time loop, films without memory, and a count of motions."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

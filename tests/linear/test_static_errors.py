@@ -1,7 +1,5 @@
 """Stated errors of static results beside true ones: on half the cells, against the cells of all static results."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

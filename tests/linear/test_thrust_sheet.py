@@ -1,7 +1,5 @@
 """Sheets of thrust bearings: cases, faults, loads, both sides, and what other analyses say."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Rotors at rest in films that follow the tilt of the shaft: eigenvalues, limits, what is refused."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How pictures look by options, pictures on axes of one's own, and what a notebook shows."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """What a notebook shows of cases, plans, runs and results."""
 
-from __future__ import annotations
-
 import inspect
 from importlib import import_module
 from importlib.resources import files

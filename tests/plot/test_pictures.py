@@ -1,7 +1,5 @@
 """Labels and legends of pictures: none covers another, and each is in words."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import replace
 

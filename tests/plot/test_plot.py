@@ -1,7 +1,5 @@
 """Pictures of made-up runs: what is drawn is what the run holds."""
 
-from __future__ import annotations
-
 import io
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """The report of a run: what it holds, that it needs nothing else, and how a browser shows it."""
 
-from __future__ import annotations
-
 import base64
 import dataclasses
 import json

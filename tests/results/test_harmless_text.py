@@ -1,7 +1,5 @@
 """Text in a table: no formula to a spreadsheet, no command to a terminal."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

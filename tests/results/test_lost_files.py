@@ -1,7 +1,5 @@
 """Files that cannot be written: what is refused before the work, and what stays of it."""
 
-from __future__ import annotations
-
 import json
 import os
 from pathlib import Path

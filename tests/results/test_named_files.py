@@ -1,7 +1,5 @@
 """Files that are named, whatever they are: each command ends in one clear line, without a wait or a traceback."""
 
-from __future__ import annotations
-
 import errno
 import os
 import signal

@@ -1,7 +1,5 @@
 """Where results are written: they replace nothing but earlier results of their kind, and either whole or not at all."""
 
-from __future__ import annotations
-
 import csv
 import os
 import re

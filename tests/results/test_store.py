@@ -1,7 +1,5 @@
 """Run files: what goes in comes out, whatever happens to the process or to the file."""
 
-from __future__ import annotations
-
 import io
 import os
 import pickle

@@ -1,7 +1,5 @@
 """Numbers that ask too much: what a run holds in memory, what it costs before it begins, and that it is told before."""
 
-from __future__ import annotations
-
 import json
 import shutil
 import subprocess

@@ -1,7 +1,5 @@
 """Films on cells beside grooves: they start on any mesh, and the plan holds its target."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

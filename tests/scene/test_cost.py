@@ -1,7 +1,5 @@
 """The plan knows its cost, and chooses the cheapest film that holds the target."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

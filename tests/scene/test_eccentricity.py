@@ -1,7 +1,5 @@
 """The eccentricity that a plan expects: limits of the short bearing, and runs."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What `frb check` finds before the plan: masses, loads, natural frequencies, Sommerfeld numbers."""
 
-from __future__ import annotations
-
 import json
 import math
 

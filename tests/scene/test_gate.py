@@ -1,8 +1,6 @@
 """The gate: every public function that takes a case, and every command that takes CASE, refuses the same faulty cases
 with the same sentence, before anything is computed. Both lists are made from the code."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable
 from pathlib import Path

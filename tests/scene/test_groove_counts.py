@@ -1,8 +1,6 @@
 """Axial grooves of any number in any film of a machine: all of its films have equal numbers of cells, whatever edges
 their grooves have, and no more or fewer than the plan says."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The reasons of a plan say what is so: what is set is said to be set, and what is not is not."""
 
-from __future__ import annotations
-
 import tomllib
 from typing import Any
 

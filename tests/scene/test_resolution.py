@@ -1,7 +1,5 @@
 """What a plan says of loads and inputs that change with time: their frequencies beside steps and samples."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 

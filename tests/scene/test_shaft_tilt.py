@@ -1,7 +1,5 @@
 """The tilt of journals that `frb check` states: closed forms of beams, and how it reaches the gap."""
 
-from __future__ import annotations
-
 import json
 import math
 

@@ -1,7 +1,5 @@
 """The error that is expected of a run, from two short runs before it."""
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """The points of short sweeps."""
 
-from __future__ import annotations
-
 from frbcli.studies.sweep import Workers
 
 SHORT = ["film.theory=short", "speed.duration=0.3 s", "speed.to=250 Hz"]

@@ -1,7 +1,5 @@
 """`frb accuracy`: the ladder, its reference, its front, table and picture."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path

@@ -1,7 +1,5 @@
 """`frb compare`: the same run-up with several models of the films."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal

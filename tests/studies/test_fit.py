@@ -1,7 +1,5 @@
 """Ridges, a measurement beside a run, and numbers of a case found from a measurement that another case has made."""
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Callable

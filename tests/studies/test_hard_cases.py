@@ -1,7 +1,5 @@
 """The hard cases: the quick ones here, all of them as a benchmark; and what a case that goes wrong looks like."""
 
-from __future__ import annotations
-
 import json
 import os
 import time

@@ -1,7 +1,5 @@
 """Runs beside each other: the same as one after the other, with progress and a clean end."""
 
-from __future__ import annotations
-
 import signal
 from pathlib import Path
 

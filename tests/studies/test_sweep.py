@@ -1,7 +1,5 @@
 """Parameter studies: which points there are, that each is the run it would be alone, that none is ever lost."""
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Iterator

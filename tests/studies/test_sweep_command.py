@@ -1,7 +1,5 @@
 """A sweep as table, picture and command."""
 
-from __future__ import annotations
-
 import csv
 import json
 import os

@@ -1,7 +1,5 @@
 """What a sweep is given: ranges, linked keys, keys of bearings by name, distributions; and what it says of machines."""
 
-from __future__ import annotations
-
 import json
 import math
 from importlib.util import find_spec

@@ -1,7 +1,5 @@
 """Kernels are compiled ahead of time, once, and not by a check: with an empty cache of their own."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

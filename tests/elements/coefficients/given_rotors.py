@@ -1,7 +1,5 @@
 """Rigid and Jeffcott rotors in bearings of given coefficients."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

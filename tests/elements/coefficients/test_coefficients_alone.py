@@ -4,8 +4,6 @@ With z = x + i y, [[k, q], [-q, k]] is k - i q, and so for damping and mass: a r
 obeys (m + 2 M) z'' + 2 C z' + 2 K z = -i m g + unbalance, with complex M, C, K.
 """
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """Given coefficients beside films, their files, and the faults of both."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any

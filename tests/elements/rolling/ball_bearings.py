@@ -1,8 +1,6 @@
 """The bearings of tests/data/ball-bearing.csv; and a ball bearing as the minimum of one energy, with dense matrices of
 all displacements and no elimination: the equations of frbcli/elements/ball_force.py, slow and easy to read."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from math import radians
 

@@ -1,7 +1,5 @@
 """Rotors on ball bearings: rest, small motions, free vibrations, balls that pass, and cases that make no sense."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 from pathlib import Path

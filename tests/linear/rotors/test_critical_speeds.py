@@ -1,7 +1,5 @@
 """Critical speeds of `response` against closed forms, and against the machine solved densely around them."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

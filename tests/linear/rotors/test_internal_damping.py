@@ -1,7 +1,5 @@
 """Damping that turns with the shaft: thresholds and growth against closed forms, by stability and by runs."""
 
-from __future__ import annotations
-
 import math
 from pathlib import Path
 from typing import Any

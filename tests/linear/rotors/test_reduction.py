@@ -1,7 +1,5 @@
 """Shafts in soft bearings at their ends: the reduction against the rotor with all its modes."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

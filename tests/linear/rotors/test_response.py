@@ -1,7 +1,5 @@
 """The linear unbalance response against closed forms and against the synchronous motion of a run-up."""
 
-from __future__ import annotations
-
 import csv
 import json
 import math

@@ -1,7 +1,5 @@
 """Balance quality, limits of vibration and separation margins against figures computed by hand."""
 
-from __future__ import annotations
-
 import json
 import math
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Machines without damping: no motion grows, whatever round-off makes of it."""
 
-from __future__ import annotations
-
 import json
 import math
 from typing import Any

@@ -1,7 +1,5 @@
 """Hard cases: each is computed in a process of its own, and compared with its expected end and its reference."""
 
-from __future__ import annotations
-
 import json
 import math
 from collections.abc import Callable, Sequence
