@@ -30,9 +30,8 @@ from frbcli.arrays import Array
 BETWEEN = 0.03  # of a step of the search: how far a moment that is read between two steps may be off
 NEAR = 0.1  # of the time of an event: how much earlier or later it may be in the second run
 NEAR_REVOLUTIONS = 40.0  # of the rotor, or as much: at the beginning of a run a whirl settles in as many
-SAFETY = 3.0  # times the difference of both runs in an event, which may be small by chance ...
-BY_SHARE = 4.0  # ... times the share of the error, in one of three whirls or more, whose usual one counts, too ...
-SAFETY_OF_MEANS = 2.5  # ... and of the largest one in a slow signal: 39 of 40 errors of random machines are within it
+SAFETY = 3.0  # times the difference of both runs, which may be small by chance ...
+BY_SHARE = 4.0  # ... or times the share of the error, in one of three whirls or more, whose usual one counts, too
 HALF = 0.5  # share of a difference to a run with three times the tolerance, if errors are proportional to it
 STUDENT = (6.31, 2.92, 2.35, 2.13, 2.02, 1.94, 1.89, 1.86)  # t of 1 ... 8 differences, in 9 of 10 cases
 TRIMMED = 1.5  # root mean square of normal differences over that without their largest quarter
@@ -111,7 +110,7 @@ class _Usual:
 
 def slow_uncertainties(run: RunLike, second: RunLike) -> dict[str, float]:
     """Uncertainties of ring speeds, temperatures, losses and oil fractions over a whole run, as keys of its error: the
-    largest difference of the means in WINDOWS parts of the run, times SAFETY_OF_MEANS, in the unit of the name. Of
+    largest difference of the means in WINDOWS parts of the run, times SAFETY, in the unit of the name. Of
     several signals of a kind the least certain one counts; without such signals the result is empty."""
     count = min(len(run), len(second))
     edges = np.unique(np.linspace(0, count, WINDOWS + 1).astype(np.int64))
@@ -120,7 +119,7 @@ def slow_uncertainties(run: RunLike, second: RunLike) -> dict[str, float]:
         names = [name for name in run.signals if name.startswith(quantity)]
         apart = [_means(run, name, edges) - _means(second, name, edges) for name in names]
         if apart and count:
-            uncertainties[key] = SAFETY_OF_MEANS * float(np.abs(apart).max())
+            uncertainties[key] = SAFETY * float(np.abs(apart).max())
     return uncertainties
 
 

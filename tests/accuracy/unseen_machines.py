@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from frbcli.analysis.uncertainty import SAFETY_OF_MEANS, partners, slow_uncertainties
+from frbcli.analysis.uncertainty import SAFETY, partners, slow_uncertainties
 from frbcli.case.reading.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.results.store import Run
@@ -225,7 +225,7 @@ def _slow(run: Run, fine: Run) -> Iterator[Stated]:
     for key, apart in slow_uncertainties(run, fine).items():
         if key in run.error:
             name = key.partition("_uncertainty")[0].replace("_", " ")
-            yield Stated(name, "", math.nan, float(run.error[key]), apart / SAFETY_OF_MEANS)
+            yield Stated(name, "", math.nan, float(run.error[key]), apart / SAFETY)
 
 
 def rows(machines: Sequence[Machine]) -> Iterator[str]:

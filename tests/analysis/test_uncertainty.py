@@ -17,7 +17,6 @@ from frbcli.analysis.uncertainty import (
     NEAR,
     NEAR_REVOLUTIONS,
     SAFETY,
-    SAFETY_OF_MEANS,
     SMALLER,
     STUDENT,
     TRIMMED,
@@ -188,7 +187,7 @@ def test_a_slow_signal_is_as_uncertain_as_its_means_differ() -> None:
     half of a hundredth less in the mean of the last part."""
     found = slow_uncertainties(rings(40.0, 5.0, 2.0), rings(40.5, 1.0, 2.1))
     assert found == {
-        "ring_speed_uncertainty_Hz": pytest.approx(SAFETY_OF_MEANS * 0.5, rel=1e-3),
-        "temperature_uncertainty_K": pytest.approx(SAFETY_OF_MEANS * 0.995, rel=1e-3),
+        "ring_speed_uncertainty_Hz": pytest.approx(SAFETY * 0.5, rel=1e-3),
+        "temperature_uncertainty_K": pytest.approx(SAFETY * 0.995, rel=1e-3),
     }
     assert slow_uncertainties(make_run(Rotor()), make_run(Rotor())) == {}
