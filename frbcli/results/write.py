@@ -41,6 +41,7 @@ PIECE = 4 * 1024**2  # bytes of a file that are held at a time
 
 # Numbers of fields, their digits and their exponents
 _NUMBER = re.compile(rb"(?:^|(?<=,))(-?\d+\.\d+)(e[+-]?\d+)?(?=[,\r\n])")
+_QUOTED = re.compile(rb'"[^"]*(?:"|$)')
 _CHECKSUM = re.compile(rb"0{%d}(\d{%d})$" % (ZEROS, DIGITS))
 PART = ".part"  # ends the names of files that are being written
 TOKEN = 8  # letters between the name of a file and PART
@@ -98,11 +99,11 @@ def _tail(file: BinaryIO) -> tuple[int, bytes]:
 
 
 def _numbers(tail: bytes) -> Iterator[tuple[int, re.Match[bytes]]]:
-    """(where a line begins, a number with a point in it in front of any text in quotes), from the last line upwards."""
+    """(where a line begins, a number with a point in it outside of quotes), from the last line upwards."""
     end = len(tail)
     while end > 0:
         begin = tail.rfind(b"\n", 0, end - 1) + 1
-        for number in _NUMBER.finditer(tail[begin:end].partition(b'"')[0]):
+        for number in _NUMBER.finditer(_QUOTED.sub(lambda text: b'"' * len(text[0]), tail[begin:end])):
             yield begin, number
         end = begin
 

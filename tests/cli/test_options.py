@@ -150,3 +150,9 @@ def test_a_shell_is_given_its_script(shell: str) -> None:
 def test_an_option_of_other_commands_leads_there(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["limit-cycles", "jeffcott", "--over", "oil.viscosity='8..14 mPa*s'"]) == 2
     assert "`frb limit-cycles --parameter`" in " ".join(capsys.readouterr().err.split())
+
+
+@pytest.mark.parametrize("words", [["response", "seal", "--map"], ["stability", "seal", "-o", "a.png"]])
+def test_a_picture_that_is_asked_for_is_not_left_out(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert run([*words, "--no-picture"]) == 2
+    assert "names the picture that --no-picture leaves out" in capsys.readouterr().err

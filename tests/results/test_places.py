@@ -202,7 +202,7 @@ def test_the_checksum_of_a_table_is_in_no_number() -> None:
     assert np.allclose(table, columns, rtol=max(1e-15, 2.0 * parser_error()), atol=0.0)
 
 
-LAST_LINES = "0.0,1.5\n", "-2.5e-07,1.0\n", "a,-1e-300,3.25,\n", '"a,1.5,b",2.5\n', "1.5\n", "9.5,0.0\r\n"
+LAST_LINES = "0.0,1.5\n", "-2.5e-07,1.0\n", "a,-1e-300,3.25,\n", '"a,1.5,b",2.5\n', '"a,1.5\n', "1.5\n", "9.5,0.0\r\n"
 
 
 @pytest.mark.parametrize("line", LAST_LINES)
@@ -211,12 +211,12 @@ def test_a_table_with_a_number_in_its_last_line_is_told_by_its_checksum(line: st
     Path("t.csv").write_text(text, newline="")
     assert not has_checksum(Path("t.csv"))
     mark_table(Path("t.csv"))
-    if '"' in line:  # in quotes a number is a text
+    if line.count('"') == 1:  # in quotes a number is a text
         assert Path("t.csv").read_bytes() == text.encode()
         return
     marked = Path("t.csv").read_bytes()
     assert has_checksum(Path("t.csv"))
-    fields, before = (csv_text.splitlines()[-1].split(",") for csv_text in (marked.decode(), text))
+    fields, before = (list(csv.reader(csv_text.splitlines()))[-1] for csv_text in (marked.decode(), text))
     for field, was in zip(fields, before, strict=True):
         assert field == was or float(field) == float(was)
     for changed in (marked.replace(b"x,y", b"x,z"), marked + b"\n", marked[:-1], b"# mine\n" + marked):

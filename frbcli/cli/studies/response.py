@@ -85,6 +85,8 @@ def command(
 
     if excitation != "unbalance" and run_file is not None:
         raise click.UsageError("--excitation and --run exclude each other: --run is for the synchronous motion.")
+    if as_map and not outputs.picture:
+        raise click.UsageError("--map names the picture that --no-picture leaves out.")
     places = outputs.check(here(case.name, "-critical-map.png" if as_map else "-response.png"))
     run = None if run_file is None else read_run(run_file)
     with computing(terminal, case, kernels="rest") as shown:

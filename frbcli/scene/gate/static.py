@@ -265,8 +265,11 @@ def speed_range_faults(case: Case) -> Iterator[Fault]:
     """Cycles are followed over speeds above zero."""
     speeds = default_speeds(case)
     if not speeds or not speeds[-1] > speeds[0]:
-        problem, remedy = "leaves no range of speeds above zero.", 'Write e.g. speed.to = "300 Hz".'
-        yield Fault("speed.to", f"{case.speed.end:g} Hz", None, problem, remedy)
+        key, remedy = "speed.to", 'Write e.g. speed.to = "300 Hz".'
+        if case.speed.end > 0.0:
+            key, remedy = "speed.from", 'Write a lower one, e.g. speed.from = "0 Hz".'
+        at = case.speed.start if key == "speed.from" else case.speed.end
+        yield Fault(key, f"{at:g} Hz", None, "leaves no range of speeds above zero.", remedy)
 
 
 def unbalance_faults(case: Case) -> Iterator[Fault]:
