@@ -169,7 +169,7 @@ def trial(seed: int) -> tuple[tuple[str, ...], str, list[str]]:
     numbers = [value for value in known if isinstance(value.value, float)]
     nasty = []
     for value in chance.sample(numbers if chance.random() < 0.8 else known, count):
-        if isinstance(value.value, str) or chance.random() < 0.05:
+        if isinstance(value.value, str | dict) or chance.random() < 0.05:
             nasty.append(f"{value.key}={chance.choice(WORDS)}")
         elif isinstance(value.value, int):
             nasty.append(f"{value.key}={chance.choice((0, 1, 2, 3, 100, 10**6))}")

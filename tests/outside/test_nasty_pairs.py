@@ -17,6 +17,7 @@ from frbcli.scene.planning.plan import make_plan
 PAIRS, INPUTS, NIGHTS = 384, 48, 8  # two in a night to each command, one to each, and of surfaces one
 SURFACES = 200  # cases with nasty values of contact, free gas, limited flow and baths
 SEEDS = range(nasty_pairs.SURFACES, nasty_pairs.SURFACES + SURFACES)
+ELEMENTS = range(nasty_pairs.ELEMENTS, nasty_pairs.ELEMENTS + SURFACES)
 ANALYSES = RUN, ROTATION, WHIRL, BEARING, STABILITY, CYCLES
 
 
@@ -36,8 +37,9 @@ def test_every_command_that_takes_a_case_is_tried() -> None:
 
 
 @pytest.mark.nightly
-def test_two_nasty_values_break_no_command(tmp_path: Path) -> None:
-    tried(tmp_path, seeds_tonight(range(PAIRS), NIGHTS))
+@pytest.mark.parametrize("first", [0, nasty_pairs.ELEMENTS])
+def test_two_nasty_values_break_no_command(first: int, tmp_path: Path) -> None:
+    tried(tmp_path, seeds_tonight(range(first, first + PAIRS), NIGHTS))
 
 
 @pytest.mark.nightly
@@ -59,10 +61,11 @@ def refused(seed: int) -> InputError | None:
     return None
 
 
-def test_nasty_surfaces_and_gas_are_refused_or_planned() -> None:
+@pytest.mark.parametrize("seeds", [SEEDS, ELEMENTS], ids=["surfaces", "elements"])
+def test_nasty_surfaces_gas_and_elements_are_refused_or_planned(seeds: range) -> None:
     """With key, problem and remedy, before a film is made."""
     vague, planned = [], 0
-    for seed in SEEDS:
+    for seed in seeds:
         try:
             error = refused(seed)
         except Exception as bug:
