@@ -156,8 +156,8 @@ def test_every_kernel_of_the_package_is_compiled_so() -> None:
     assert bare == []
 
 
-# Touch, Rub, Values, Slopes: records and tuples of numbers.
-NUMBERS = re.compile(r"Touch|Rub|GridMotion|(tuple\[)?((float|int|bool|None|\.\.\.|Values|Slopes)(, )?)+\]?")
+# Touch, Rub, SectionEnd, Values, Slopes: records and tuples of numbers.
+NUMBERS = re.compile(r"Touch|Rub|GridMotion|SectionEnd|(tuple\[)?((float|int|bool|None|\.\.\.|Values|Slopes)(, )?)+\]?")
 
 
 def kernels(folder: Path) -> Iterator[tuple[str, str, str, set[str]]]:
