@@ -159,6 +159,8 @@ def trial(seed: int) -> tuple[tuple[str, ...], str, list[str]]:
             source, settings = TOUCHING[0]
     if seed >= ELEMENTS:
         source, settings = WITH_ELEMENTS[chance.randrange(len(WITH_ELEMENTS))]
+        if command[0] == "limit-cycles" and "thrust" in source:  # takes more than 400 s of CPU time, too
+            source, settings = WITH_ELEMENTS[0]
     of_films = () if source == ON_BALLS else (MOTION, *NEEDS.get(command[0], ()))
     more = [each for each in (*SHORT_RUN, *of_films) if settings is not DRIVEN or not each.startswith("speed.")]
     settings = (*settings, *more)
