@@ -41,7 +41,7 @@ from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.errors import Fault
 from frbcli.materials import ROLLING, Elastic
 from frbcli.rotor.assembly import COORDINATES, PLANE, Link
-from frbcli.rotor.loads import LinearPart, lines
+from frbcli.rotor.loads import LinearPart, piecewise_linear
 from frbcli.rotor.port import ANGLE, D_X, D_Y, F_X, F_Y, GRIP, SPEED, TORQUE, XX, XY, YX, YY, ForceLaw
 from frbcli.units import display
 
@@ -437,7 +437,7 @@ class BallBearingElement(MachineElement):
     def plan_line(self, site: Site) -> Line:
         return self.line
 
-    def pressed(self, omega: float) -> float:
+    def preload_left(self, omega: float) -> float:
         """What the axial load leaves of the preload at omega rad/s, N; infinite where it does not act on it."""
         if self.given.locating is None or self.rings.pair:
             return math.inf
@@ -446,7 +446,7 @@ class BallBearingElement(MachineElement):
 
     def faults(self) -> list[Fault]:
         """An axial load that takes the preload away."""
-        if (least := min(self.pressed(0.0), self.pressed(self.top))) > 0.0:
+        if (least := min(self.preload_left(0.0), self.preload_left(self.top))) > 0.0:
             return []
         other = "left" if self.given.locating == "right" else "right"
         left = f"{display(least, 'N')} of its preload is left"
@@ -474,7 +474,7 @@ class BallBearingElement(MachineElement):
 @lru_cache(maxsize=8)
 def tilt_over_speed(element: BallBearingElement, distance: float) -> LinearPart:
     """See BallBearingElement.tilt; distance: of the rows, m."""
-    table = lines(partial(element.in_tilt, distance), element.top * FIRST_SPEEDS, LINE_ERROR)
+    table = piecewise_linear(partial(element.in_tilt, distance), element.top * FIRST_SPEEDS, LINE_ERROR)
     stiffness, damping = np.zeros((len(table), 4, 4)), np.zeros((len(table), 4, 4))
     damping[:, TILTED, TILTED] = 0.25 * element.given.damping * distance**2
     for matrix, (force, moment) in zip(stiffness, table.values(), strict=True):

@@ -341,7 +341,7 @@ class StaticMachines:
 def check_balls(bearing: BallBearingElement, omega: float) -> None:
     """Raises NotConverged at a speed in rad/s at which a ball bearing has no force, or none that is known."""
     tilt, name, speed = bearing.tilt, bearing.given.name, omega / (2.0 * math.pi)
-    if bearing.pressed(omega) <= 0.0:
+    if bearing.preload_left(omega) <= 0.0:
         raise NotConverged(f"The axial load pulls the rings of the bearing {name} apart at {speed:.4g} Hz.")
     if tilt is not None and omega > tilt.speeds[-1] * (1.0 + 1e-9):
         known = f"is known up to {tilt.speeds[-1] / (2.0 * math.pi):.4g} Hz, and not at {speed:.4g} Hz"

@@ -242,10 +242,10 @@ def _check_held(case: Case) -> None:
         _check_springs(case, ("ball",), "Take the damped modes, frb stability --shapes SPEED.")
 
 
-def _check_springs(case: Case, but: Sequence[str], remedy: str) -> None:
+def _check_springs(case: Case, kinds: Sequence[str], remedy: str) -> None:
     """Raises InputError where bearings of a case are of these kinds, which are no springs."""
     for key, bearing in zip(case.bearing_keys, case.placed_bearings, strict=True):
-        if bearing.kind in but:
+        if bearing.kind in kinds:
             what = "balls" if bearing in case.elements else "films"
             problem = f"has {what}, whose stiffness follows from the static equilibrium."
             raise case.refused(Fault(f"{key}.kind", bearing.kind, None, problem, remedy))

@@ -260,7 +260,7 @@ def summed(parts: Sequence[LinearPart]) -> LinearPart | None:
 NARROW = 1e-4  # over the largest speed: steps of a table that are not halved any more
 
 
-def lines(at: Callable[[float], Array], speeds: Array, error: float) -> dict[float, Array]:
+def piecewise_linear(at: Callable[[float], Array], speeds: Array, error: float) -> dict[float, Array]:
     """Values of a function at speeds, ascending from the given ones, and at as many between as leave lines between them
     off by no more than `error` of the largest one there."""
     table = {speed: at(speed) for speed in speeds.tolist()}
