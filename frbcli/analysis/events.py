@@ -302,7 +302,7 @@ def _whirls_of_any_frequency(
     seal, that has no film to give its speed; its room is the length of the machine."""
     settled_s = float(turns.time_s[min(turns.settled, len(turns.time_s) - 1)]) if len(turns.time_s) else 0.0
     for whirl in find_whirls(run, name, room, settled_s) if room > 0.0 else ():
-        if whirl.rings_out and not in_films:
+        if whirl.free and not in_films:
             continue
         moments: dict[Kind, WhirlMoment | None] = {
             "onset": whirl.onset,

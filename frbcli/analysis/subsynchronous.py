@@ -44,6 +44,7 @@ SHORTEST = 1.5  # windows; a shorter ridge is a transient
 SHORTEST_REVOLUTIONS = 20.0
 RINGS_OUT = 0.4  # share of its logarithmic decay that a free vibration has had half of its time later
 LEAST_FALL = np.log(1.5)  # of the amplitude in that time
+GROWS = 1.25  # times the amplitude that it begins with: beyond that a self-excited motion grows, and no free vibration
 
 OUTER_UP_TO = 1.4  # times omega_F/2: inner films whirl with a multiple of it, whips included
 LEAVES_LINE = 0.95  # share of the frequency of a free whirl below which it is locked into a mode
@@ -60,15 +61,15 @@ class WhirlMoment:
 @dataclass(frozen=True)
 class Whirl:
     """A sub-synchronous motion; the film that drives it. lock_in, offset: None if it does not lock, or lasts up to the
-    end of the run; amplitude: the largest one, over the room of the journal; rings_out: whether it dies as a free
-    vibration."""
+    end of the run; amplitude: the largest one, over the room of the journal; free: whether it dies as a free vibration,
+    or has not grown since it began."""
 
     side: Side
     onset: WhirlMoment
     lock_in: WhirlMoment | None
     offset: WhirlMoment | None
     amplitude: float
-    rings_out: bool = False
+    free: bool = False
 
 
 @dataclass
@@ -183,15 +184,17 @@ def find_whirls(run: RunLike, name: str, room: float, settled_s: float = 0.0) ->
         shortest = max(SHORTEST * window_s, SHORTEST_REVOLUTIONS / max(float(speed[first]), 1e-9))
         if time[last] - max(time[first], settled_s) < shortest and not (lasts and cut_short and len(at)):
             continue
-        free = 0.5 * (ring[at] if side == "outer" else speed[at] + ring[at])
-        locks = _lock_in(at, frequencies[index, at] - LEAVES_LINE * free)
+        on_line = 0.5 * (ring[at] if side == "outer" else speed[at] + ring[at])
+        locks = _lock_in(at, frequencies[index, at] - LEAVES_LINE * on_line)
         overtaken = not lasts and amplitudes[index, last + 1] > 0.0
         frequency, amplitude = windows.continued(frequencies[index], amplitudes[index], first, last)
         passed = _overtaken(amplitude - strongest, last) if overtaken else crossing(amplitude, last, ENDS, 1)
         moment = partial(_moment, time_s=time, frequency_Hz=frequency)
         lock_in, offset = None if locks is None else moment(locks), None if lasts else moment(passed)
         onset = moment(crossing(amplitude, first, BEGINS, -1))
-        whirls.append(Whirl(side, onset, lock_in, offset, float(amplitude[at].max()), rings_out(amplitude[at])))
+        largest = float(amplitude[at].max())
+        free = rings_out(amplitude[at]) or largest <= GROWS * amplitude[at[0]]
+        whirls.append(Whirl(side, onset, lock_in, offset, largest, free))
     return tuple(sorted(whirls, key=lambda whirl: whirl.onset.time_s))
 
 

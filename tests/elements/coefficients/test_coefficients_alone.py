@@ -254,6 +254,17 @@ def test_the_run_of_the_shipped_seal_shows_its_critical_speed_and_its_whirl(tmp_
     assert onset.frequency_Hz == pytest.approx(natural, rel=0.01)
 
 
+@pytest.mark.parametrize("ratio", [1e-3, 3e-4, 1e-4])
+def test_a_free_vibration_that_hardly_dies_is_no_whirl(ratio: float, tmp_path: Path) -> None:
+    """A fast ramp leaves it behind a resonance, with damping so small that it lasts up to the end of the run."""
+    damping = f"{ratio * math.sqrt(2.0 * K * M)!r} N*s/m"  # of each of two bearings
+    mount = {"kind": "coefficients", "name": "mount", "stiffness": f"{K!r} N/m", "damping": damping}
+    run = runup(rigid(mount, speed=speed(20.0, 250.0)), tmp_path / "run.h5")
+    late = run["speed_Hz"] > 200.0
+    assert np.ptp(run["journal_x_m"][late]) > 0.1 * run.references["length_m"]  # it is there, and large
+    assert not {"onset", "self-excited"} & {event["kind"] for event in run.events}
+
+
 @pytest.mark.parametrize("share", [0.8, 1.25])
 def test_a_run_grows_above_the_threshold_and_decays_below(share: float, tmp_path: Path) -> None:
     """At a constant speed, without unbalance: the forward whirl out of the start grows by its eigenvalue."""
