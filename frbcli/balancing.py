@@ -22,8 +22,9 @@ import numpy as np
 
 from frbcli.analysis.measured import MEASURED
 from frbcli.analysis.order_tracking import FEWEST as LEAST_REVOLUTIONS
-from frbcli.analysis.order_tracking import MARK, REVOLUTIONS, STEPS, OrderTrack, order_track
+from frbcli.analysis.order_tracking import REVOLUTIONS, STEPS, OrderTrack, order_track
 from frbcli.analysis.signals import RunLike, course, joined, points, signal_of
+from frbcli.analysis.tacho import MARK
 from frbcli.arrays import Array, Complex, Truths, larger_semi_axis
 from frbcli.case.reading.load import load_case_text
 from frbcli.case.schema import Case

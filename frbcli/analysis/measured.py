@@ -19,8 +19,8 @@ import numpy as np
 
 from frbcli.analysis.events import Event, find_events
 from frbcli.analysis.forced import ForcedLine, constant_lines, forced_lines, forced_references
-from frbcli.analysis.order_tracking import MARK, Tacho, tacho_speed
 from frbcli.analysis.signals import even_steps, point_of, require_rising, sampled_at
+from frbcli.analysis.tacho import MARK, Tacho, tacho_speed
 from frbcli.arrays import Array
 from frbcli.errors import did_you_mean
 from frbcli.results.measured import read_columns

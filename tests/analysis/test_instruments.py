@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from frbcli.analysis.measured import Measurement, measured_run
-from frbcli.analysis.order_tracking import tacho_speed
+from frbcli.analysis.tacho import tacho_speed
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
 from frbcli.results.measured import read_columns
@@ -345,6 +345,40 @@ def test_missing_and_double_pulses_are_found_and_said(tmp_path: Path) -> None:
     lines = [f"{t:.5f},{np.cos(2 * np.pi * a):.4f},{p:g}" for t, a, p in zip(TIME, TURN, signal, strict=True)]
     run = measured_run(table(tmp_path / "a.csv", "t [s],x [um],key", lines), Measurement("x", time="t", tacho="key"))
     assert 'Pulses of "key": 3 missing ones were added and 2 double ones left out' in run.remarks[1]
+
+
+@pytest.mark.parametrize(("kind", "share"), [("missing", 0.05), ("missing", 0.1), ("double", 0.05), ("double", 0.2)])
+@pytest.mark.parametrize("seed", range(4))
+def test_many_pulses_are_missing_or_double(kind: str, share: float, seed: int) -> None:
+    """By the median of three intervals, one in twenty pulses that were double made the speed 60 % too high."""
+    turns = np.random.default_rng(seed).choice(np.arange(2, 290), round(share * 300), replace=False)
+    if kind == "missing":
+        signal = pulse(TURN) * ~np.isin(np.floor(TURN), turns)
+    else:
+        signal = np.maximum(pulse(TURN), pulse(TURN - 0.1) * np.isin(np.floor(TURN - 0.1), turns))
+    found = tacho_speed(TIME, signal, 1)
+    assert (found.missing, found.double) == ((len(turns), 0) if kind == "missing" else (0, len(turns)))
+    assert found.speed_Hz[2000:-2000] == pytest.approx(RISING_Hz[2000:-2000], rel=1e-2)
+
+
+def test_a_tooth_that_a_wheel_lacks_is_added() -> None:
+    """Eight teeth, one of them broken off: the speed was seven eighths of the true one."""
+    found = tacho_speed(TIME, pulse(8.0 * TURN, 0.5) * (TURN % 1.0 > 0.125), 8)
+    assert found.speed_Hz[2000:-2000] == pytest.approx(RISING_Hz[2000:-2000], rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("signal", "said"),
+    [
+        (np.random.default_rng(1).normal(0.0, 0.01, len(TIME)), "pulses at uneven intervals"),
+        (np.maximum(pulse(TURN), pulse(TURN - 0.1)), "pulses at uneven intervals"),  # two marks, said to be one
+        (pulse(TURN) * ((TIME < 1.0) | (TIME > 3.0)), r"no pulses from 0\.97\d* s to 3\.13 s"),
+    ],
+    ids=["noise", "two marks", "gap"],
+)
+def test_a_signal_that_gives_no_speed_is_refused(signal: np.ndarray, said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        tacho_speed(TIME, signal, 1)
 
 
 def test_a_rotor_that_starts_and_stops_misses_no_pulse() -> None:

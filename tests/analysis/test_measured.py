@@ -13,7 +13,8 @@ import pytest
 from synthetic_run import CLEARANCE, Rotor, signals
 
 from frbcli.analysis.measured import Measurement, measured_run
-from frbcli.analysis.order_tracking import MARK, order_track
+from frbcli.analysis.order_tracking import order_track
+from frbcli.analysis.tacho import MARK
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError

@@ -100,7 +100,7 @@ def read_tacho(path: Path, name: str, pulses: int) -> dict[str, list[float]]:
     Refused."""
     import numpy as np
 
-    from frbcli.analysis.order_tracking import tacho_speed
+    from frbcli.analysis.tacho import tacho_speed
     from frbcli.results.measured import read_columns
 
     if not isinstance(pulses, int) or pulses < 1:
