@@ -33,13 +33,17 @@ BAND = 0.1  # of the slow speed, by which the speed may be off it
 LEAST_REVOLUTIONS = 3.0  # about that speed
 MEASURED = "measured"  # the command of such a run
 USUAL = {"--unit": 1e-6, "--time-unit": 1.0, "--speed-unit": 1.0}  # SI, of columns without a unit
-SPELLINGS = {"u/min": "rpm", "upm": "rpm", "seconds": "s", "second": "s"}  # of units, in measured files
+SPELLINGS = {  # of units, in measured files
+    "u/min": "rpm", "upm": "rpm", "seconds": "s", "second": "s", "days": "day", "rad_s": "rad/s", "radps": "rad/s",
+}  # fmt: skip
 RATE_OF_TIME = ("m/s", "m/s^2")  # SI units of what a sensor of motion may give instead of a displacement
 MOST_NUMBERS = 8  # of a file, in a remedy
 EXAMPLES = {"--unit": '"125 um"', "--time-unit": '"1 ms"', "--speed-unit": '"1 rpm"'}
 SAME = 1e-6  # relative difference of two units that are one
 NAMES = {"--unit": "um", "--time-unit": "s", "--speed-unit": "Hz"}  # of the units in USUAL
 ANGULAR = re.compile(r"omega\w*|ω|Ω|w", re.IGNORECASE)  # names of a speed in rad/s, as equations have it
+NEAR = 0.1  # of a step, by which times may differ that are the same
+LEAST_TURNS = 0.1  # of the rotor in a measurement
 SLOWEST = 1.0  # samples per second: a smaller number is an interval
 
 
@@ -240,6 +244,7 @@ def _signals(
     x = units.column(given.x, given.unit_m, "m", "--unit")
     y = np.zeros_like(x) if given.y is None else units.column(given.y, given.unit_m, "m", "--unit")
     time = _times(units, given, len(x))
+    _require_common_times(columns, given)
     if len({len(x), len(y), len(time)}) > 1:
         raise wrong_file(columns.path, "has columns of unequal length.", "Give columns that were measured together.")
     speed, tacho = _speeds(units, given, time)
@@ -365,6 +370,30 @@ def _times(units: _Units, given: Measurement, count: int) -> Array:
     return np.arange(count) / rate
 
 
+def _require_common_times(columns: Columns, given: Measurement) -> None:
+    """Raises InputError for a column that stands behind other times than those that are used, as files have it in
+    which each channel has its own."""
+    names, used = list(columns.values), columns.time_name if given.time is None else given.time
+    if used is None or given.rate is not None:
+        return
+    used = columns.named(used)
+    speed = [] if given.speed is None or given.speed_time is not None else [given.speed]
+    for name in filter(None, (given.x, given.y, given.tacho, *speed)):
+        behind = names[: names.index(columns.named(name))]
+        own = next((each for each in reversed(behind) if columns.holds_times(each)), used)
+        others = columns.values[own]
+        if own != used and others.shape == columns.values[used].shape and not _same(columns.values[used], others):
+            problem = f'has "{name}" behind the times "{own}", which differ from "{used}".'
+            remedy = f'Give --speed-time "{own}".' if name in speed else "Give columns that have their times in common."
+            raise wrong_file(columns.path, problem, remedy)
+
+
+def _same(times: Array, others: Array) -> bool:
+    """Whether two columns of times agree to a tenth of their steps."""
+    step = (times[-1] - times[0]) / (len(times) - 1)
+    return bool(np.nanmax(np.abs(times - others)) <= NEAR * abs(step))
+
+
 def _number(columns: Columns, name: str) -> float:
     """A single number of the file as samples per second."""
     if name in columns.numbers:
@@ -401,10 +430,14 @@ def _speeds(units: _Units, given: Measurement, time: Array) -> tuple[Array, Tach
 def _check_sampling(columns: Columns, given: Measurement, time: Array, speed: Array) -> None:
     """Raises InputError if the rotor turns faster than the samples can show; this also finds a wrong unit of times or
     speeds before anything is computed with them."""
-    rate = (len(time) - 1) / max(float(time[-1] - time[0]), SMALLEST)
+    lasts_s = float(time[-1] - time[0])
+    rate = (len(time) - 1) / max(lasts_s, SMALLEST)
     fastest = float(np.max(np.abs(speed)))
-    if not 2.0 * fastest < rate:
+    turned = fastest * lasts_s
+    if not 2.0 * fastest < rate or 0.0 < turned < LEAST_TURNS:
         problem = f"has {rate:.4g} samples per second, too few for a rotor of up to {fastest:.4g} Hz."
+        if turned < LEAST_TURNS:
+            problem = f"lasts {lasts_s:.3g} s, in which a rotor of {fastest:.4g} Hz turns {turned:.2g} times."
         times_by = "--rate" if given.time is None else "--time-unit"
         speeds_by = "--speed-unit" if given.speed else "--speed-at" if given.tacho is None else "--pulses"
         remedy = f"Check {times_by} and {speeds_by}; more than two samples per revolution are needed."

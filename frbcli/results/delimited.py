@@ -334,6 +334,8 @@ def _names_at(head: Sequence[Sequence[str]], layout: _Layout) -> int | None:
         above = _without_end(head[place - 1])
         fits = len(above) >= layout.least and len(above) == len(_without_end(head[place])) and all(above)
         fits = fits and not _is_called_units(head[place])
+        if place == len(head) - 1 and len(above) >= layout.least and _is_called_units(head[place]):
+            fits = len(above) == len(_without_end(head[place])) and not any(map(layout.is_number, above))
         if fits and _are_units(head[place], layout) and not _are_units(above, layout):
             return place - 1
     words = [place for place, row in enumerate(head) if _are_words(row, layout)]

@@ -10,24 +10,27 @@ from typing import Any
 
 import numpy as np
 
-from frbcli.arrays import Array
+from frbcli.arrays import Array, Truths
 from frbcli.errors import FEW, InputError, did_you_mean, input_error, nearest, printable
 from frbcli.results.delimited import UNITS, without_unit
 from frbcli.results.records import LARGEST
 
 LARGEST_FILE = 1024**3  # bytes
+FAR = 10.0  # times all other numbers of a column
 
 
 # Units at the end of a name, such as time_ms, speed_rpm, journal_x_m; one letter counts behind an underscore alone
-_LONG = "ms|us|µs|sec|Hz|hz|kHz|rpm|RPM|krpm|rad/s|mm|um|µm|nm|cm|mil|mils|micron|microns"
+_RATES = "rad/s|rad_s|radps|1/min|min-1|rev/min|U/min"
+_LONG = f"ms|us|µs|sec|Hz|hz|kHz|rpm|RPM|krpm|mm|um|µm|nm|cm|mil|mils|micron|microns|{_RATES}"
 
 
-SUFFIX = re.compile(rf".+(?:_(?:in_)?({_LONG}|s|m)|\s({_LONG}))")
+SUFFIX = re.compile(rf".+?(?:_(?:in_)?({_LONG}|s|m)|\s({_LONG}))")
+OF_TIMES = re.compile(r"(?:time|timestamp|zeit|temps|t)_(ns|min|h|days?|d)", re.IGNORECASE)  # else ends of other words
 WRITTEN_OUT = re.compile(r"(.+?)(\s+in\s+|\s*/\s*)(\S+)")  # n in 1/min, t/s; brackets are read with the head
 OVER_TIME = {*UNITS, "rev", "r", "u", "l", "kg", "j"}  # what has a rate: rev/s is a unit, and no rev in seconds
 
 
-TIME_NAME = re.compile(r"(?:time|timestamp|zeit|temps|t)(?:_?(?:s|sec|ms|us|µs))?", re.IGNORECASE)
+TIME_NAME = re.compile(r"(?:time|timestamp|zeit|temps|t)(?:_?(?:s|sec|ms|us|µs|ns|min|h|days?|d))?", re.IGNORECASE)
 TIME_UNITS = ("s", "sec", "second", "seconds", "ms", "us", "µs")
 ITSELF = re.compile(r"rpm|RPM|Hz|U/min|1/min|min-1|r/min|rev/min|cpm|krpm|[Ss]econds?")  # names that are a unit
 
@@ -59,7 +62,7 @@ class Columns:
         """A column. Raises InputError if there is none of this name, or its values are not finite."""
         column = self.values[self.named(name)]
         with np.errstate(invalid="ignore"):
-            good = np.abs(column) <= LARGEST  # NaN is not
+            good = (np.abs(column) <= LARGEST) & ~_are_gaps(column)  # NaN is not
         if not np.all(good):
             first = int(np.argmin(good))
             what = f"the number {column[first]:g}" if np.isfinite(column[first]) else "no number"
@@ -95,6 +98,11 @@ class Columns:
         names = names or [name for name in self.values if (self._unit(name) or "").lower() in TIME_UNITS]
         return names[0] if len(names) == 1 else None
 
+    def holds_times(self, name: str) -> bool:
+        """Whether the name of a column, or its unit, says that it holds times."""
+        word = without_unit(name.removesuffix(f"/{unit_in(name)}")).strip().rstrip("0123456789_. ")
+        return TIME_NAME.fullmatch(word) is not None or (self._unit(name) or "").lower() in TIME_UNITS
+
     def unit(self, name: str) -> str | None:
         """The unit of a column, None where the file does not state it."""
         return self._unit(self.named(name))
@@ -126,13 +134,24 @@ class Columns:
         return f"It has {len(names)} columns: `frb waterfall {self.path.name} --columns` lists them."
 
 
+def _are_gaps(column: Array) -> Truths:
+    """Whether numbers stand for missing ones: digits of 9 alone, such as -9999, far beyond all others."""
+    nines = [sign * (10.0**digits - 1.0) for digits in range(3, 8) for sign in (1.0, -1.0)]
+    marks = np.isin(column, nines)
+    if marks.any():
+        others = np.abs(column[~marks & np.isfinite(column)])
+        marks &= np.abs(column) > FAR * np.max(others, initial=0.0)
+    return marks
+
+
 def unit_in(name: str) -> str | None:
     """The unit that a name ends with or is, None if there is none."""
     plain = without_unit(name).strip()
-    if ITSELF.fullmatch(plain):
-        return plain
-    if match := SUFFIX.fullmatch(plain):
-        return match.group(1) or match.group(2)
+    of_struct = plain.rpartition(".")[2]
+    if ITSELF.fullmatch(of_struct):
+        return of_struct
+    if match := OF_TIMES.fullmatch(of_struct) or SUFFIX.fullmatch(plain):
+        return str(next(filter(None, match.groups())))
     written = WRITTEN_OUT.fullmatch(plain)
     if written is None or written[3].lower() not in UNITS or plain.lower() in UNITS:
         return None

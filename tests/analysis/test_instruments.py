@@ -216,6 +216,11 @@ def test_a_speed_that_is_missing_for_long_is_refused(tmp_path: Path) -> None:
         ("t [s],x [um pp],y [um pk-pk],n [r/min]", (1.0, 1.0, 1.0)),
         ("t [s],x [um],y [um],n [cpm]", (1.0, 1.0, 1.0)),
         ("t [s],x [um],y [um],n [min-1]", (1.0, 1.0, 1.0)),
+        ("t_ns,x,y,n_1/min", (1e9, 1.0, 1.0)),
+        ("t_min,x,y,n_min-1", (1 / 60.0, 1.0, 1.0)),
+        ("Time (days),x,y,run.rpm", (1 / 86400.0, 1.0, 1.0)),
+        ("t,x,y,omega_rad_s", (1.0, 1.0, np.pi / 30.0)),
+        ("t,x,y,speed_radps", (1.0, 1.0, np.pi / 30.0)),
     ],
 )
 def test_a_name_may_hold_its_unit(head: str, factors: tuple[float, float, float], tmp_path: Path) -> None:
@@ -226,7 +231,38 @@ def test_a_name_may_hold_its_unit(head: str, factors: tuple[float, float, float]
     run = measured_run(path, Measurement(x, y=y, time=time, speed=speed))
     is_the_motion(run)
     assert run["speed_Hz"] == pytest.approx(20.0)
-    assert "no unit" not in run.remarks[0]
+    assert f"{speed} in Hz (no unit" not in run.remarks[0]
+    assert f"{time} in s (no unit" not in run.remarks[0] or time == "t"
+
+
+def test_days_without_a_unit_are_no_seconds(tmp_path: Path) -> None:
+    """Times of a spreadsheet were read as a record of some microseconds."""
+    lines = [f"{45050.4 + float(t) / 86400.0:.12f},{x:.5f},{n}" for t, x, _, n in rows()]
+    path = table(tmp_path / "a.csv", "Time,x [um],n [rpm]", lines)
+    with pytest.raises(InputError, match=r"a rotor of 20 Hz turns 0\.0001\d times. Check --time-unit"):
+        measured_run(path, Measurement("x", time="Time", speed="n"))
+
+
+@pytest.mark.parametrize(("given", "remedy"), [
+    (Measurement("x", y="y", time="t1", speed_Hz=20.0), "Give columns that have their times in common"),
+    (Measurement("x", time="t1", speed="n"), r'Give --speed-time "t3 \[s\]"'),
+])  # fmt: skip
+def test_a_channel_with_times_of_its_own_is_not_taken_at_others(
+    given: Measurement, remedy: str, tmp_path: Path
+) -> None:
+    lines = [f"{t},{x:.5f},{float(t) + 0.1:.6f},{y:.5f},{2.0 * float(t):.6f},{n}" for t, x, y, n in rows()]
+    path = table(tmp_path / "a.csv", "t1 [s],x [um],t2 [s],y [um],t3 [s],n [rpm]", lines)
+    with pytest.raises(InputError, match=remedy):
+        measured_run(path, given)
+    run = measured_run(path, Measurement("x", time="t1", speed="n", speed_time="t3"))
+    assert run["speed_Hz"] == pytest.approx(20.0)
+
+
+def test_a_number_for_a_missing_one_is_no_displacement(tmp_path: Path) -> None:
+    lines = [*PLAIN[:300], PLAIN[300].split(",")[0] + ",-9999,-9999,1200", *PLAIN[301:]]
+    path = table(tmp_path / "a.csv", "t,x,y,n", lines)
+    with pytest.raises(InputError, match=r"the number -9999 in row 301"):
+        measured_run(path, Measurement("x", time="t", speed_Hz=20.0))
 
 
 def test_the_units_that_were_taken_are_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -419,6 +455,7 @@ SIGLENT = (
     "Second,Value,Value"
 )
 BENTLY = 'Machine,"Turbine, A"\n"Timestamp","X (mil pp)","Y (mil pp)","Speed (RPM)"'
+PROSIG = "DATS\nSampling rate: 2048\n\n,Ch 1,Ch 2,Ch 3\nUnits,um,um,rpm"
 GERMAN = "Zeit;Weg x;Weg y;Drehzahl\ns;µm;µm;1/min\n;;;"
 
 
@@ -434,10 +471,11 @@ GERMAN = "Zeit;Weg x;Weg y;Drehzahl\ns;µm;µm;1/min\n;;;"
          Measurement("CH1", y="CH2", time="Second", speed_Hz=20.0, unit_m=125e-6)),
         ("csv", BENTLY, '"5/4/2023 9:51:39.{ticks:07d} AM",{mx:.6f},{my:.6f},1200',
          Measurement("X", y="Y", time="Timestamp", speed="Speed")),
+        ("csv", PROSIG, "{t:.7f},{x:.5f},{y:.5f},1200", Measurement("Ch 1", y="Ch 2", rate=2048.0, speed="Ch 3")),
         ("csv", GERMAN, "{t:.7f};{x:.5f};{y:.5f};1200", Measurement("Weg x", y="Weg y", time="Zeit", speed="Drehzahl")),
         ("csv", "", "{k},{x:.5f},{y:.5f},0.1", Measurement("2", y="3", rate=2048.0, speed_Hz=20.0)),
     ],
-    ids=["dewesoft", "catman", "lvm", "siglent", "bently", "german", "no head"],
+    ids=["dewesoft", "catman", "lvm", "siglent", "bently", "prosig", "german", "no head"],
 )  # fmt: skip
 def test_a_head_of_another_instrument(suffix: str, head: str, row: str, given: Measurement, tmp_path: Path) -> None:
     lines = []
