@@ -25,7 +25,7 @@ NUMBER = "1"
 KINEMATIC = "m^2/s"  # of a viscosity
 
 _SPEED_UNITS = {"Hz": 1.0, "kHz": 1e3, "rpm": 1 / 60, "1/min": 1 / 60, "krpm": 1e3 / 60, "rad/s": 1 / (2 * math.pi)}
-_PER_MINUTE = ("rpm", "RPM", "1/min", "min^-1", "min-1", "r/min", "rev/min", "U/min", "tr/min", "cpm")  # one unit
+_PER_MINUTE = ("rpm", "RPM", "1/min", "min^-1", "min-1", "r/min", "rev/min", "U/min", "Upm", "tr/min", "cpm")
 _SPEED_SPELLINGS = dict.fromkeys(_PER_MINUTE, "rpm") | {"rev/s": "Hz", "rps": "Hz"}
 _ANGLE_UNITS = {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180, "°": math.pi / 180}
 _ANGLE_SPELLINGS = {"degree": "deg", "degrees": "deg"}
@@ -49,7 +49,7 @@ _COMMON: dict[str, dict[str, float]] = {
     "N*s/m": {"N*s/m": 1.0, "N*s/mm": 1e3, "kN*s/m": 1e3},
     "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "mbar": 1e2, "bar": 1e5, "N/mm^2": 1e6},
     "Pa*s": {"Pa*s": 1.0, "mPa*s": 1e-3, "cP": 1e-3},
-    KINEMATIC: {"m^2/s": 1.0, "mm^2/s": 1e-6, "cSt": 1e-6},
+    KINEMATIC: {"m^2/s": 1.0, "mm^2/s": 1e-6, "cSt": 1e-6, "St": 1e-4},
     "s": {"s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "min": 60.0},
     "m/s": {"m/s": 1.0, "mm/s": 1e-3},
     "m/s^2": {"m/s^2": 1.0},
@@ -72,7 +72,7 @@ _DECIMAL_COMMA = re.compile(r"([+-]?\d+),(\d+)(.*)", re.DOTALL)
 _THOUSANDS = re.compile(r"\d{1,3}\.\d{3}")  # of a speed in rpm: 150.000 is 150 to some and 150 000 to others
 _MOST_OF_A_GROUP = 3  # digits behind a mark of thousands
 _ABSOLUTE = re.compile(r"(\w+?)\s*(?:a|\(a\)|abs\.?|absolute)")
-_GAUGE = re.compile(r"(bar|mbar|psi|kPa|MPa|Pa)\s*(?:g|\(g\)|gauge|gage)", re.IGNORECASE)
+_GAUGE = re.compile(r"(bar|mbar|psi|kPa|MPa|Pa)\s*(?:g|ü|\([gü]\)|gauge|gage)", re.IGNORECASE)
 _ATMOSPHERE = 101325.0  # Pa
 _HYPHEN = re.compile(r"(?<=[A-Za-z])[-.](?=[A-Za-z])")  # of g-mm and N.m
 _POWER = re.compile(r"(?<=[A-Za-zµ])(?=[2-4](?![0-9]))")  # of kg/m3
@@ -81,6 +81,10 @@ _JOINED = re.compile(r"\b([mkM]?N|m?Pa|k?g)(m|mm|cm|s)(?![A-Za-z])")
 _PER_KELVIN = re.compile(r"/(m|kg) ?K$")  # of W/mK, whose kelvin is below the line
 _NAMES = {"lbm": "lb", "kp": "kgf", "lpm": "l/min", "gpm": "gallon/min", "GPM": "gallon/min"}
 _WEIGHTS = {"lb": "lbf", "oz": "ozf"}  # of masses that stand where a force is meant
+_DOUBTFUL = {  # names that the registry takes for what few people mean by them
+    "gr": 'is a grain to some and a gram to others. Write "g".',
+    **dict.fromkeys(("ton", "tons"), 'is 1000 kg to some and 907 kg or 1016 kg to others. Write "t" for 1000 kg.'),
+}
 _PEAK_TO_PEAK = re.compile(r"(\S+)\s+(?:pp|p-p|pk-pk|pkpk)")
 LONGEST_UNIT = 100  # characters; longer ones are not searched
 LONGEST_SHOWN = 40  # characters of a unit in a fault
@@ -94,7 +98,9 @@ _NAME = re.compile(r"[A-Za-zµ°]+")
 _PREFIXES = frozenset(("y", "z", "f", "p", "n", "u", "µ", "c", "da", "k", "M", "G", "E", "Z", "Y"))
 _BEFORE_BLANK = re.compile(rf"(?<![A-Za-zµ°])({'|'.join(sorted(_PREFIXES))}|[mdhTP])\s+(?=[A-Za-z])")
 _ABBREVIATION = 4  # characters at most: an s behind it is no plural, but may be a second
-_SIGNS = {"²": "^2", "³": "^3", "⁻": "^-", "¹": "1", "·": "*", "⋅": "*", "μ": "µ", '"': "in", "″": "in"}
+_SIGNS = {
+    "²": "^2", "³": "^3", "⁻": "^-", "¹": "1", "·": "*", "⋅": "*", "×": "*", "μ": "µ", "º": "°", '"': "in", "″": "in",
+}  # fmt: skip
 _SPELLING = str.maketrans(_SIGNS)
 
 # What people read, by SI unit: (name, SI value of one, SI value from which it is used), smallest first.
@@ -295,6 +301,9 @@ def _by_pint(number: float, unit_text: str, unit: str, remedy: str) -> float:
     if not _UNIT.fullmatch(unit_text):
         raise ValueFault(f'has a unit that cannot be read: "{_shown(unit_text)}".', remedy)
     names = _NAME.findall(unit_text)
+    if doubtful := next((name for name in names if name in _DOUBTFUL), None):
+        problem, _, remedy = _DOUBTFUL[doubtful].partition(". ")
+        raise ValueFault(f'has the unit "{unit_text}", in which "{doubtful}" {problem}.', remedy)
     if prefix := next((name for name in names if name in _PREFIXES), None):
         raise ValueFault(f'has the unit "{unit_text}", in which "{prefix}" is a prefix without a unit.', remedy)
     import pint

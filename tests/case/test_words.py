@@ -13,7 +13,7 @@ from frbcli.materials import walther
 TWO = '{ points = [["40 degC", "46 cSt"], ["100 degC", "6.8 cSt"]] }'
 
 
-@pytest.mark.parametrize("text", ["12 cSt", "12 mm^2/s", "1.2e-5 m^2/s", "12 mm²/s"])
+@pytest.mark.parametrize("text", ["12 cSt", "0.12 St", "12 mm^2/s", "1.2e-5 m^2/s", "12 mm²/s"])
 def test_a_kinematic_viscosity_is_taken_with_the_density(text: str) -> None:
     case = load_case("jeffcott", [f"oil.viscosity={text}", "oil.density=850 kg/m^3"])
     assert case.oil.viscosity == pytest.approx(12e-6 * 850.0)
@@ -40,6 +40,12 @@ def test_a_grade_is_known_by_its_spellings(written: str) -> None:
     grades = [load_case("jeffcott", [f"oil.viscosity={name}", "oil.temperature=60 degC"])
               for name in (written, '{ grade = "ISO VG 46" }')]  # fmt: skip
     assert grades[0].oil == grades[1].oil
+
+
+@pytest.mark.parametrize("grade", ["ISO VG 22", "SAE 15W-40"])
+def test_a_grade_without_data_leads_to_its_data_sheet(grade: str) -> None:
+    with pytest.raises(InputError, match="For another oil give density and"):
+        load_case("jeffcott", [f"oil.viscosity={grade}", "oil.temperature=60 degC"])
 
 
 def test_a_multigrade_needs_no_sae() -> None:
@@ -69,6 +75,15 @@ def test_a_multigrade_needs_no_sae() -> None:
         ("bearing.ends=flooded", 'Write "oil-bath"'),
         ("bearing.play=70 um", "Write clearance, half of a diametral play: 35 um."),
         ("bearing.D=25 mm", "Write diameter."),
+        ("bearing.durchmesser=25 mm", "Write diameter."),
+        ("bearing.Lagerspiel=70 um", "Write clearance, half of a diametral play: 35 um."),
+        ("bearing.Cr=35 um", "Clearances are radial: write clearance."),
+        ("bearing.preload=0.5", "Write preload in lobes."),
+        ("oil.nu=12 cSt", 'Write viscosity = "12 cSt", and density.'),
+        ("oil.viscosity=12 MPa*s", "but must be at most 1000 Pa*s"),
+        ("rotor.mass=6 ton", 'Write "t" for 1000 kg.'),
+        ("rotor.unbalance=10 gr*mm", '"gr" is a grain to some and a gram to others. Write "g".'),
+        ("bearing.supply.pressure=3 barü", 'Write "4.01 bar"'),
         ("oil.eta=0.012", 'Write viscosity = "12 mPa*s"'),
         ("rotor.zeta=0.01", "Write shaft_damping, 2 zeta times"),
         ("gravity=0", "Write gravity in [rotor]."),

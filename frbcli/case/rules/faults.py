@@ -65,33 +65,40 @@ VALUES_ELSEWHERE = {
         **dict.fromkeys(("flood", "bath", "submerged"), 'Write "oil-bath".'),
     },
 }  # fmt: skip
+OF_POINTS = 'For another oil give density and { points = [["40 degC", "22 cSt"], ["100 degC", "4.3 cSt"]] }.'
 OVER_RATE = "Write duration, the difference of the speeds over this rate."
 OF_RATIO = "Write shaft_damping, 2 zeta times the root of stiffness times mass."
 KEYS_ELSEWHERE = {  # (the key that takes its place, in whose table alone it is answered; the words)
-    "radius": ("diameter", "Write diameter{twice}."),
+    **dict.fromkeys(("radius", "R"), ("diameter", "Write diameter{twice}.")),
     "L_D": ("width", "Write width and diameter."),
     "length": ("width", "Write width."),
     "type": ("kind", "Write kind."),
     **dict.fromkeys(("grade", "vg"), ("viscosity", 'Write viscosity = "ISO VG 32", and temperature.')),
     "dynamic_viscosity": ("viscosity", 'Write viscosity = "12 mPa*s".'),
-    "kinematic_viscosity": ("viscosity", 'Write viscosity = "12 cSt", and density.'),
+    **dict.fromkeys(("kinematic_viscosity", "nu"), ("viscosity", 'Write viscosity = "12 cSt", and density.')),
     **dict.fromkeys(("eta", "mu"), ("viscosity", 'Write viscosity = "12 mPa*s".')),
     **dict.fromkeys(("sae", "iso", "iso_vg"), ("viscosity", 'Write viscosity = "ISO VG 32", and temperature.')),
-    "rho": ("density", "Write density."),
+    **dict.fromkeys(("rho", "dichte"), ("density", "Write density.")),
     "weight": ("mass", "Write mass."),
     "gap": ("clearance", "Write clearance."),
-    **dict.fromkeys(("play", "diametral_play"), ("clearance", "Write clearance, half of a diametral play{half}.")),
-    **dict.fromkeys(("D", "bore"), ("diameter", "Write diameter.")),
-    **dict.fromkeys(("B", "L"), ("width", "Write width.")),
+    **dict.fromkeys(
+        ("play", "diametral_play", "spiel", "Lagerspiel"),
+        ("clearance", "Write clearance, half of a diametral play{half}."),
+    ),
+    **dict.fromkeys(("D", "d", "bore", "durchmesser"), ("diameter", "Write diameter.")),
+    **dict.fromkeys(("B", "L", "breite"), ("width", "Write width.")),
     **dict.fromkeys(("damping_ratio", "zeta"), ("shaft_damping", OF_RATIO)),
     **dict.fromkeys(("fs", "sample_rate"), ("step", "Write step, the inverse of the rate.")),
+    "dt": ("step", "Write step."),
+    "preload": ("lobes", "Write preload in lobes."),
+    "unwucht": ("unbalance", "Write unbalance."),
     "gravity": ("rotor", "Write gravity in [rotor]."),
     "eccentricity": ("unbalance", "Write unbalance, the mass times this eccentricity."),
-    **dict.fromkeys(("max", "end"), ("to", "Write to.")),
+    **dict.fromkeys(("max", "end", "stop", "drehzahl"), ("to", "Write to.")),
     **dict.fromkeys(("min", "start"), ("from", "Write from.")),
     **dict.fromkeys(("ramp", "acceleration"), ("duration", OVER_RATE)),
     "rpm": ("to", 'Write the unit with the number, e.g. to = "18000 rpm".'),
-    "radial_clearance": ("clearance", "Clearances are radial: write clearance."),
+    **dict.fromkeys(("radial_clearance", "C", "c", "Cr"), ("clearance", "Clearances are radial: write clearance.")),
     **dict.fromkeys(
         ("diametral_clearance", "diametrical_clearance"),
         ("clearance", "Clearances are radial: write clearance, half of the diametral one{half}."),
@@ -178,7 +185,7 @@ def _breach(path: Path, loc: Sequence[str | int], kind: str, context: dict[str, 
         remedy = elsewhere or did_you_mean(given, _choices(_place(loc).field))
         if path == CAVITATION and not elsewhere:
             remedy += " A law of your own is added in this process before the case is read: frbcli.add_law."
-        return Breach(path, UNKNOWN, remedy)
+        return Breach(path, UNKNOWN, f"{remedy} {OF_POINTS}" if path[-1] == "grade" else remedy)
     field = _place(loc).field
     if kind == "tuple_type" and field is not None and _parts(field.annotation, Model):
         kind = "model_type"
