@@ -25,10 +25,12 @@ if TYPE_CHECKING:
     import pandas as pd
 
 
-_DATE = r"\d{4}-\d\d?-\d\d?|\d{4}/\d\d?/\d\d?|\d\d?\.\d\d?\.\d{4}|\d\d?/\d\d?/\d{4}"
+_DAYS = r"\d\d?\.\d\d?\.|\d\d?/\d\d?/|\d\d?-[A-Za-z]{3}-"  # before a year of four digits or two
+_DATE = rf"\d{{4}}-\d\d?-\d\d?|\d{{4}}/\d\d?/\d\d?|(?:{_DAYS})(?:\d{{4}}|\d\d)"
 _PARTS = rf"(?:({_DATE})[T ]\s*)?(\d\d?):(\d\d):(\d\d(?:[.,]\d*)?)\s*(AM|PM|am|pm)?(?:Z|[+-]\d\d:?\d\d)?"
 STAMP = re.compile(_PARTS)
-DATES = ("%Y-%m-%d", "%Y/%m/%d", "%d.%m.%Y", "%m/%d/%Y", "%d/%m/%Y")
+_LATE = ("%d.%m.", "%m/%d/", "%d/%m/", "%d-%b-")
+DATES = ("%Y-%m-%d", "%Y/%m/%d", *(f"{days}{year}" for year in ("%Y", "%y") for days in _LATE))
 DAY_s, HALF_DAY_s = 86400.0, 43200.0
 COMMENTS = ("#", "%")
 NUMBERED = re.compile(r"\s*[#%]\s*[,;\t]")  # a line whose first column counts the rows, or is in %

@@ -63,6 +63,9 @@ class Columns:
         column = self.values[self.named(name)]
         with np.errstate(invalid="ignore"):
             good = (np.abs(column) <= LARGEST) & ~_are_gaps(column)  # NaN is not
+        if not np.any(np.isfinite(column)):
+            remedy = "Name a column of numbers; times may be stamps such as 2023-05-04 09:51:39.5."
+            raise wrong_file(self.path, f'has no numbers in the column "{name}".', remedy)
         if not np.all(good):
             first = int(np.argmin(good))
             what = f"the number {column[first]:g}" if np.isfinite(column[first]) else "no number"

@@ -126,6 +126,8 @@ def test_a_word_for_a_gap_spoils_its_own_row_alone(word: str, mark: str, tmp_pat
         ("when", "2023-05-04T23:59:59.{:07d}Z"),
         ("when", "04.05.2023 23:59:59,{:07d}"),
         ("when", "23:59:59.{:07d}"),
+        ("when", "04-May-2023 23:59:59.{:07d}"),
+        ("when", "04.05.23 23:59:59.{:07d}"),
         ("date;when", "05/04/2023;11:59:59.{:07d} PM"),
     ],
 )
@@ -136,10 +138,18 @@ def test_time_stamps_are_times(head: str, stamp: str, tmp_path: Path) -> None:
         text = stamp.format(ticks % 10_000_000)
         if ticks >= 10_000_000:
             text = text.replace("11:59:59", "12:00:00").replace(" PM", " AM").replace("23:59:59", "00:00:00")
+            text = text.replace("04-May", "05-May")
             text = text.replace("2023-05-04", "2023-05-05").replace("04.05.", "05.05.").replace("05/04/", "05/05/")
         lines.append(f"{text};{x:.5f};{y:.5f};{n}")
     path = table(tmp_path / "a.csv", f"{head};x [um];y [um];n [rpm]", lines[:2048])
     is_the_motion(measured_run(path, Measurement("x", y="y", time="when", speed="n")))
+
+
+def test_times_in_words_are_no_numbers(tmp_path: Path) -> None:
+    lines = [f"Thu May 4 9h51 {t},{x:.5f}" for t, x, *_ in rows()]
+    path = table(tmp_path / "a.csv", "t,x", lines)
+    with pytest.raises(InputError, match=r'no numbers in the column "t".*times may be stamps such as'):
+        measured_run(path, Measurement("x", time="t", speed_Hz=20.0))
 
 
 @pytest.mark.parametrize("name", ["run.tdms", "run.xlsx"])

@@ -68,7 +68,8 @@ def test_a_data_logger_in_latin_1_with_units_in_its_names(tmp_path: Path) -> Non
     given = Measurement("x [µm]", 35e-6, "y [µm]", time="Zeit [ms]", speed="n [Hz]", unit_m=1e-6)
     assert 'Give --time-unit "1 ms"' in said(path, replace(given, time_unit_s=1.0))
     holds(path, Measurement(given.x, 35e-6, given.y, time=given.time, speed=given.speed, unit_m=1e-6, time_unit_s=1e-3))
-    assert "no number in row 1 (line 2)" in said(path, Measurement("Status", 35e-6, time="Zeit [ms]", time_unit_s=1e-3))
+    of_words = Measurement("Status", 35e-6, time="Zeit [ms]", time_unit_s=1e-3)
+    assert 'no numbers in the column "Status"' in said(path, of_words)
 
 
 def test_a_spreadsheet_in_utf_16(tmp_path: Path) -> None:
@@ -239,7 +240,7 @@ def test_samples_of_any_width_have_the_same_amplitude(bits: int, kind: int, extr
         (wav(MOTION, 16, rate=1), "1 samples per second, too few for a rotor of up to 120 Hz"),
         (wav(MOTION[:0], 16), "no samples"),
         (wav(np.zeros((3, 2000)), 16), "2000 channels"),
-        (wav(np.full((9, 2), np.nan), 32, 3), "no number in row 1"),
+        (wav(np.full((9, 2), np.nan), 32, 3), "no numbers in the column"),
     ],
     ids=["short", "odd", "head", "law", "rate 0", "rate 1", "empty", "channels", "NaN"],
 )
