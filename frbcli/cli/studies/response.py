@@ -96,7 +96,7 @@ def command(
     _show(terminal, motion, reduced, bool(speeds))
     machine = machine_document(terminal, case, speeds[-1]) if speeds else {}
     limits = None if operating is None else vibration_limits(motion, operating)
-    quality = None if grade is None else balance_quality(case, grade, operating[1] if operating else None)
+    quality = None if grade is None else balance_quality(motion.case, grade, operating[1] if operating else None)
     if limits is not None:
         show_limits(terminal, limits)
     if quality is not None:

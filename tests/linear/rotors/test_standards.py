@@ -182,6 +182,20 @@ def test_the_command_says_what_is_within(tmp_path: Path, capsys: pytest.CaptureF
     assert "350 to 400 Hz alone" in " ".join(capsys.readouterr().out.split())
 
 
+@pytest.mark.parametrize("table", ["rotor", "disk"])
+def test_a_grade_counts_what_is_lost(table: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """10 g mm and 20 g mm a quarter turn ahead are 500^(1/2) g mm, from the beginning or after the loss."""
+    name, place = ("jeffcott", "rotor") if table == "rotor" else ("turbocharger-ball", "disk.0")
+    for time, more in (("0 s", []), ("0.1 s", ["--after-loss"])):
+        loss = f'{place}.loss={{time="{time}", unbalance="20 g*mm", phase="90 deg"}}'
+        settings = [f"{place}.unbalance=10 g*mm", loss, *(["film.theory=short"] if table == "rotor" else [])]
+        words = ["response", name, "--no-picture", "--json", "--speed", "50 Hz", "--grade", "G2.5", *more]
+        assert frb([*words, *(word for each in settings for word in ("--set", each))]) == 0
+        first = json.loads(capsys.readouterr().out)["grade"]["planes"][0]
+        assert first["unbalance_kg_m"] == pytest.approx(math.sqrt(500.0) * 1e-6, rel=1e-9)
+        assert first["angle_deg"] == pytest.approx(math.degrees(math.atan2(2.0, 1.0)), abs=1e-6)
+
+
 @pytest.mark.parametrize("grade", ["Gx", "0", "-2.5", "G", "G1e9", "nan", "2.5 mm"])
 def test_what_is_no_grade_is_refused(grade: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert frb(["response", "jeffcott", "--grade", grade, "--no-picture"]) == 2
