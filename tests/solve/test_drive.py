@@ -138,6 +138,9 @@ def test_the_plan_names_the_drive_and_its_top_speed() -> None:
     told = {made.choice: made.value for made in make_plan(case_from_dict(MACHINE | {"drive": drive}, "plan")).decisions}
     assert (told["speed"], told["drive"], told["load"]) == ("free", "0.05 N*m", "0.0001 N*m*s")
     assert told["governor"] == "40 Hz"
+    drive = {"torque": [["0 s", "0.1 N*m"], ["0.1 s", "0.1 N*m"]], "duration": "0.3 s"}
+    reasons = {made.choice: made.reason for made in make_plan(case_from_dict(MACHINE | {"drive": drive})).decisions}
+    assert reasons["drive"] == "2 points over the time, 0 to 0.1 s, constant beyond"
     slope = TORQUE / (0.02 * 80.0 * math.pi)  # N m s: by how much the governor takes the torque away
     assert float(told["top speed"].split()[0]) == pytest.approx(40.0 * slope / (slope + BRAKES), rel=1e-3)
 
