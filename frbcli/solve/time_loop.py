@@ -241,7 +241,8 @@ def _solve_stage(
             if spins.shape[0] > 0 or turns_freely(rotor.drive):
                 left = max(left, spin_up(films, work, rotor, s, g, control, scratch, rings))
                 brake_at_ports(rotor.ports, rotor.drive)
-                left = max(left, turn_on(rotor.drive, rotor, t, t_s, s, g, rings.bodies, rings.angles, scratch))
+                least = _smallest(clearances, rotor.ports)
+                left = max(left, turn_on(rotor.drive, rotor, t, t_s, s, g, rings.bodies, rings.angles, scratch, least))
                 if turns_freely(rotor.drive):
                     speed = rings.bodies[0]
                     lag = g * (speed - numbers[INVERSE_SPEED]) if rotor.has_gyroscopic else 0.0
@@ -249,7 +250,7 @@ def _solve_stage(
                 set_speeds(turning, rings.bodies, rings.angles, journal, grids)
                 set_sliding(control.rough, turning, rings.bodies)
                 turned = turn_cones(rotor.cones, rings.bodies, s, s, g, selection, at, stage_a, journal)
-                left = max(left, g * turned / _smallest(clearances, rotor.ports))
+                left = max(left, g * turned / least)
             if control.linearised or left < allowed:
                 past[HISTORY + s - 1, 0] = t_s
                 for i in range(m):

@@ -295,6 +295,17 @@ def on_balls(friction: dict[str, object], start: str, duration: str, **bearing: 
     return case_from_dict(data, "balls")
 
 
+def test_loaded_balls_brake_a_rotor_that_also_moves(tmp_path: Path) -> None:
+    """J omega' = T - 2 f_1 D F with unbalance and weight: the sum F of the ball loads hardly changes with them."""
+    case = on_balls({"f1": 1e-3}, "1 Hz", "0.05 s")
+    case = case.with_settings("rotor.unbalance=5e-6 kg*m", "rotor.gravity=9.81 m/s^2", "rotor.mass=2 kg",
+                              "rotor.polar_inertia=1e-3 kg*m^2", "drive.torque=0.05 N*m")  # fmt: skip
+    run = frbcli.runup(case, tmp_path / "run.h5")
+    braked = 2.0 * 1e-3 * 0.02 * 80.0 / math.sin(run["ball_contact_angle_rad"][-1])
+    assert run.status == "finished"
+    assert run["speed_Hz"][-1] == pytest.approx(1.0 + (0.05 - braked) / 1e-3 * 0.05 / TURN, rel=0.02)
+
+
 @pytest.mark.parametrize("rows", ["single", "tandem"])
 def test_loaded_balls_brake_a_rotor_until_it_stands(rows: str, tmp_path: Path) -> None:
     """Both bearings by f_1 D F, F = Fa / sin(alpha) on each row at low speeds: omega falls linearly."""
