@@ -168,8 +168,7 @@ def ball(
     inner, outer, k_inner, k_outer = of.inner, of.outer, of.k_inner, of.k_outer
     length = math.sqrt(a * a + r * r)
     if centrifugal <= 0.0 and length <= inner + outer:  # between both rings, where it touches neither
-        share = outer / (inner + outer)
-        return _alone(a, r, share * a, share * r, memory, at)
+        return _alone(a, r, a * outer / (inner + outer), r * outer / (inner + outer), memory, at)
     if centrifugal > 0.0 and a * a + (r - rest) * (r - rest) <= inner * inner:  # on the outer ring alone
         return _alone(a, r, 0.0, rest, memory, at)
     by_a, by_r = a - memory[at], r - memory[at + 1]
