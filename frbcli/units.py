@@ -2,7 +2,7 @@
 
 Rotor speeds and frequencies are revolutions per second [Hz] everywhere outside the equations, angles are radians,
 temperatures kelvin. pint counts radians and revolutions as dimensionless and so takes "rad/s" for "Hz"; speeds are
-therefore read from a table of their own.
+therefore read from a table of their own, also those below a torque: "N*m/rpm" is N m over rad/s.
 """
 
 from __future__ import annotations
@@ -63,6 +63,11 @@ _COMMON: dict[str, dict[str, float]] = {
 }
 _CELSIUS = dict.fromkeys(("degC", "°C", "C", "deg C", "° C", "Celsius"), 273.15)  # K; no temperature is in coulomb
 _FAHRENHEIT = ("F", "deg F", "° F", "Fahrenheit")
+_PER_SPEED = ("N*m*s", "N*m*s^2")  # of a torque over powers of a speed in rad/s
+_OVER_SPEED = re.compile(
+    r"(?P<torque>[^/]+)/\s*(?:(?P<plain>[A-Za-z]+)|\((?P<inside>[^()]+)\))(?:\^(?P<power>2))?"
+)
+_PER_RADIANS = re.compile(r"/\s*rad(?:\^2)?$")  # of N*m*s/rad
 _COLD = 100.0  # K, below which nobody writes degC
 
 _TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*)", re.DOTALL)
@@ -237,6 +242,17 @@ def _pressure_unit(number: float, unit_text: str) -> str:
     return absolute_unit[1] if absolute_unit and absolute_unit[1] in ("bar", "mbar", "psi", "kPa", "MPa") else unit_text
 
 
+def _over_speed(unit_text: str) -> tuple[float, str]:
+    """A factor and the unit that is left of a torque over a speed, or over its square: 1 / 2 pi and N*m*s of N*m/Hz."""
+    parts = _OVER_SPEED.fullmatch(unit_text)
+    speed = "" if parts is None else re.sub(r"\s+", "", parts["plain"] or parts["inside"])
+    speed = _SPEED_SPELLINGS.get(speed, speed)
+    if parts is None or speed not in _SPEED_UNITS:
+        return 1.0, _PER_RADIANS.sub("", unit_text)
+    power = int(parts["power"] or 1)
+    return (2.0 * math.pi * _SPEED_UNITS[speed]) ** -power, f"{parts['torque'].strip()}*s" + "^2" * (power == 2)
+
+
 def _to_si(number: float, unit_text: str, unit: str, remedy: str) -> float:
     if unit in _TABLES:
         factors = _TABLES[unit]
@@ -258,6 +274,9 @@ def _to_si(number: float, unit_text: str, unit: str, remedy: str) -> float:
         unit_text = _pressure_unit(number, unit_text)
     elif unit == "m" and (peaks := _PEAK_TO_PEAK.fullmatch(unit_text)):
         unit_text = peaks[1]
+    elif unit in _PER_SPEED:
+        per_speed, unit_text = _over_speed(unit_text)
+        number *= per_speed
     unit_text = _HYPHEN.sub("*", unit_text)
     if unit == "K" and unit_text in _CELSIUS:
         return _round(number + _CELSIUS[unit_text])

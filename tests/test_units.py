@@ -193,6 +193,33 @@ def test_a_value_and_its_bound_never_print_alike(kind: Quantity, given: float, p
 
 
 @pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("1 N*m/rpm", "N*m*s", 30.0 / math.pi),
+        ("1 N*m/(1/min)", "N*m*s", 30.0 / math.pi),
+        ("1 mN*m/krpm", "N*m*s", 30e-6 / math.pi),
+        ("1 N*m/Hz", "N*m*s", 0.5 / math.pi),  # revolutions per second, as everywhere
+        ("1 Nm/(rad/s)", "N*m*s", 1.0),
+        ("1 N*m*s/rad", "N*m*s", 1.0),
+        ("1 N*mm/rpm^2", "N*m*s^2", 1e-3 * (30.0 / math.pi) ** 2),
+        ("1 Nm/(rad/s)²", "N*m*s^2", 1.0),
+        ("1 N*m/rpm", "N*m*s^2", None),
+        ("1 N*m/rpm^2", "N*m*s", None),
+        ("1 N*m/rad/s", "N*m*s", None),
+        ("1 N*m/s", "N*m*s", None),
+        ("1 N*m/rpm^3", "N*m*s^2", None),
+        ("1 N/rpm", "N*m*s", None),
+    ],
+)
+def test_a_torque_over_a_speed_counts_its_radians(text: str, unit: str, value: float | None) -> None:
+    if value is None:
+        with pytest.raises(ValueFault):
+            quantity(text, unit)
+    else:
+        assert quantity(text, unit) == pytest.approx(value, rel=1e-14)
+
+
+@pytest.mark.parametrize(
     ("value", "unit", "text"),
     [
         (35e-6, "m", "35 um"),

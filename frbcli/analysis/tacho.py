@@ -32,6 +32,7 @@ MOST_UNEVEN = 0.02  # share of such revolutions
 STEADY = 0.1  # difference of intervals, relative, of a rotor that neither starts nor stops
 MARK = "mark_rev"  # reference of a run: the angle in revolutions, integrated from its first sample, at the pulses
 MOST_SPREAD = 0.03  # revolutions, of that angle at the pulses
+KEPT = 3  # times that a speed is corrected by the drift of its angle
 
 
 @dataclass(frozen=True)
@@ -73,13 +74,33 @@ def tacho_speed(time: Array, signal: Array, pulses: int) -> Tacho:
     moments, missing, double = _regular(moments, pulses)
     speed = np.asarray(np.interp(time, *_mean_speeds(moments, pulses)), dtype=np.float64)
     mark = _mark(time, speed, moments) if pulses == 1 else None
+    if pulses == 1 and mark is None:
+        speed = _kept_to_pulses(time, speed, moments)
+        mark = _mark(time, speed, moments)
     return Tacho(speed, _angles(time, moments, pulses), missing, double, mark)
+
+
+def _turned(time: Array, speed: Array, moments: Array) -> Array:
+    """Revolutions from the first sample to each of the moments (m,) in s, integrated from the speed in Hz."""
+    angle = np.append(0.0, np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time)))
+    return np.asarray(np.interp(moments, time, angle), dtype=np.float64)
+
+
+def _kept_to_pulses(time: Array, speed: Array, moments: Array) -> Array:
+    """The speed (n,) in Hz, changed so that the angle integrated from it stays at the pulses at moments (m,). A mean
+    speed misses some of a revolution where a slow rotor begins to speed up. What is added is smooth, too."""
+    half = SPEED_REVOLUTIONS // 2
+    for _ in range(KEPT):
+        drift = np.pad(np.arange(len(moments)) - _turned(time, speed, moments), half, mode="edge")
+        slow = np.convolve(drift, np.full(2 * half + 1, 1.0 / (2 * half + 1)), "valid")
+        rates = np.diff(slow) / np.diff(moments)
+        speed = speed + np.interp(time, 0.5 * (moments[1:] + moments[:-1]), rates, 0.0, 0.0)
+    return np.asarray(np.maximum(speed, 0.0), dtype=np.float64)
 
 
 def _mark(time: Array, speed: Array, moments: Array) -> float | None:
     """See Tacho."""
-    angle = np.append(0.0, np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time)))
-    mean = complex(np.exp(2j * np.pi * np.interp(moments, time, angle)).mean())
+    mean = complex(np.exp(2j * np.pi * _turned(time, speed, moments)).mean())
     spread = np.sqrt(-2.0 * np.log(min(abs(mean), 1.0))) / (2.0 * np.pi) if mean else np.inf
     return float(np.angle(mean) / (2.0 * np.pi)) if spread < MOST_SPREAD else None
 

@@ -46,13 +46,13 @@ class OverTime(Model):
         return f"{len(self.time)} rows of {self.source}" if self.source else f"{len(self.time)} rows"
 
 
-def over_time_problem(time: Sequence[float], *columns: Sequence[float]) -> str:
-    """What is wrong with the numbers of a table, "" if nothing."""
+def over_time_problem(time: Sequence[float], *columns: Sequence[float], over: str = "time", unit: str = "s") -> str:
+    """What is wrong with the numbers of a table over time, or over something else in another unit; "" if nothing."""
     if any(len(column) not in (0, len(time)) for column in columns) or len(time) < 2:
-        return "needs at least two times, and a value at each of them."
+        return f"needs at least two {over}s, and a value at each of them."
     for row, (earlier, later) in enumerate(itertools.pairwise(time), start=2):
         if later <= earlier:
-            return f"has times that do not rise: {later:.9g} s in row {row} after {earlier:.9g} s."
+            return f"has {over}s that do not rise: {later:.9g} {unit} in row {row} after {earlier:.9g} {unit}."
     return ""
 
 

@@ -263,15 +263,14 @@ class _Points(Reader):
             at, torque = tuple(quantity(each, unit) for each in places), tuple(TORQUE.read(each) for each in torques)
         except ValueFault as fault:
             raise ValueFault(f"has a value that {fault.problem}", self.remedy) from None
-        if problem := over_time_problem(at, torque):
-            problem = problem.replace("times", f"{over}s").replace(" s ", f" {unit} ")
-            raise ValueFault(problem if torque else f"needs at least two {over}s.", self.remedy)
+        if problem := over_time_problem(at, torque, over=over, unit=unit):
+            raise ValueFault(problem, self.remedy)
         return TorquePoints(over=over, at=at, torque=torque)
 
     def _are(self, places: list[object], unit: str) -> bool:
         """Whether all places that have a unit can be read in this one. Raises ValueFault where none has a unit."""
         named = [each for each in places if isinstance(each, str)]
-        if not named:
+        if places and not named:
             raise ValueFault("has places without a unit: they can be speeds or times.", self.remedy)
         try:
             return all(math.isfinite(quantity(each, unit)) for each in named)
@@ -322,7 +321,7 @@ class Drive(MachineTable):
 
     torque: Torque = Field(default=0.0, description="of the drive; below 0 it brakes")
     points: Annotated[TorquePoints, _Points()] | None = Field(
-        default=None, description="replaces torque: over speed or time, linear in between"
+        default=None, description="replaces torque: over speed or time, linear, constant beyond"
     )
     load: Annotated[BrakingLoad, _Loads()] = Field(
         default=BrakingLoad(),

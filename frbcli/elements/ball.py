@@ -61,7 +61,7 @@ class BallBearing:
     turning: whether the balls pass, or act as if they were spread evenly; thrust: on all rows in addition to the
     preload, in N, and over the square of the speed of the shaft, in N s^2; pair: whether two rows, moved against each
     other by the offset, share the thrust, which presses the first one; f_1, f_0: of Palmgren's friction, see
-    ball_friction; viscosity: kinematic, of the lubricant, m^2/s.
+    ball_friction; viscosity: kinematic, of the lubricant, m^2/s; deep_groove: whether its load rating is for angle 0.
     """
 
     balls: int
@@ -81,6 +81,7 @@ class BallBearing:
     f_1: float = 0.0
     f_0: float = 0.0
     viscosity: float = 0.0
+    deep_groove: bool = False
 
     @property
     def gamma(self) -> float:
@@ -377,6 +378,7 @@ class BallBearingElement(MachineElement):
             rows=1 if given.arrangement == "single" else 2, preload=force, offset=offset,
             turning=given.cage == "turning", thrust=self.thrust, pair=given.locating == "both",
             f_1=friction.f1, f_0=friction.f0, viscosity=friction.viscosity or 0.0,
+            deep_groove=given.contact_angle is None,
         )  # fmt: skip
 
     @property

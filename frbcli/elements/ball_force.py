@@ -167,10 +167,10 @@ def ball(
     """
     inner, outer, k_inner, k_outer = of.inner, of.outer, of.k_inner, of.k_outer
     length = math.sqrt(a * a + r * r)
-    if centrifugal <= 0.0 and length <= inner + outer:
-        return _alone(a, r, outer, memory, at)
+    if centrifugal <= 0.0 and length <= inner + outer:  # between both rings, where it touches neither
+        return _alone(a, r, a * outer / (inner + outer), r * outer / (inner + outer), memory, at)
     if centrifugal > 0.0 and a * a + (r - rest) * (r - rest) <= inner * inner:  # on the outer ring alone
-        return _alone(a, r, rest, memory, at)
+        return _alone(a, r, 0.0, rest, memory, at)
     by_a, by_r = a - memory[at], r - memory[at + 1]
     u = memory[at + 2] + memory[at + 4] * by_a + memory[at + 5] * by_r
     v = memory[at + 3] + memory[at + 6] * by_a + memory[at + 7] * by_r
@@ -207,7 +207,7 @@ def ball(
         h_vv = s_rr + along * n_r * n_r + across * n_a * n_a
         determinant = h_uu * h_vv - h_uv * h_uv
         if determinant <= 0.0:
-            return _alone(a, r, rest, memory, at)
+            return _alone(a, r, 0.0, rest, memory, at)
         inverse = 1.0 / determinant
         step_u = -(h_vv * g_u - h_uv * g_v) * inverse
         step_v = -(h_uu * g_v - h_uv * g_u) * inverse
@@ -225,11 +225,11 @@ def ball(
     )  # fmt: skip
 
 
-def _alone(a: float, r: float, v: float, memory: Array, at: int) -> tuple[float, float, float, float, float]:
-    """A ball without force on the inner ring, v m from the centre of the outer groove. See ball."""
+def _alone(a: float, r: float, u: float, v: float, memory: Array, at: int) -> tuple[float, float, float, float, float]:
+    """A ball at u, v without force on the inner ring. See ball."""
     for i in range(KNOWN):
         memory[at + i] = 0.0
-    memory[at], memory[at + 1], memory[at + 3] = a, r, v
+    memory[at], memory[at + 1], memory[at + 2], memory[at + 3] = a, r, u, v
     return 0.0, 0.0, 0.0, 0.0, 0.0
 
 

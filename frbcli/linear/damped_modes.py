@@ -9,7 +9,7 @@ With the rotor speed n in revolutions per minute, in micrometres peak to peak:
 
 A critical speed with an amplification factor AF from 2.5 on keeps off the range of operation (API 617) by
 
-    17 (1 - 1 / (AF - 1.5)) percent below it,    10 + 17 (1 - 1 / (AF - 1.5)) percent above it,
+    min(16, 17 (1 - 1 / (AF - 1.5))) percent below it,    10 percent more above it,
 
 of the nearer limit of the range. Editions differ: the one in the contract decides.
 """
@@ -173,6 +173,8 @@ ZONES = "ABCD"
 ISO_RANGE_rpm = (1000.0, 30000.0)  # of machines that the standard is for
 OF_SHAFT = ("journal", "disk")  # kinds of points
 WELL_DAMPED = 2.5  # amplification factor below which no margin is asked for
+ENOUGH, ABOVE = 0.16, 0.10  # the largest margin below a range of operation; by how much it is more above one
+MARGIN_FORMULA = "min(16, 17 (1 - 1 / (AF - 1.5))) %, above the range of operation 10 % more, 0 for AF below 2.5"
 MARKS = {"linear": "", "doubtful": "?", "beyond-gap": "!"}  # validity of an amplitude
 
 
@@ -194,8 +196,8 @@ def required_margin(speed_Hz: float, factor: float | None, operating_Hz: tuple[f
         return None
     if factor < WELL_DAMPED:
         return 0.0
-    asked = 0.17 * (1.0 - 1.0 / (factor - 1.5))
-    return asked + 0.10 if speed_Hz > operating_Hz[1] else asked
+    asked = min(ENOUGH, 0.17 * (1.0 - 1.0 / (factor - 1.5)))
+    return asked + ABOVE if speed_Hz > operating_Hz[1] else asked
 
 
 @dataclass(frozen=True)

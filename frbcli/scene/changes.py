@@ -136,7 +136,10 @@ def drive_decisions(case: Case) -> Iterator[tuple[str, str, str]]:
     yield "speed", "free", f"{turns}; {reaction} the reaction of the unbalance"
     if drive.points is not None:
         low, high = (display(limit(drive.points.torque), "N*m") for limit in (min, max))
-        yield "drive", f"{low} to {high}", f"{len(drive.points.at)} points over the {drive.points.over}"
+        first, last = drive.points.at[0], drive.points.at[-1]
+        span = case.speed_unit.span(first, last) if drive.points.over == "speed" else f"{first:g} to {last:g} s"
+        points = f"{len(drive.points.at)} points over the {drive.points.over}"
+        yield "drive", f"{low} to {high}", f"{points}, {span}, constant beyond"
     else:
         value = display(drive.torque, "N*m") if drive.torque else "no torque"
         yield "drive", value, f"for {display(drive.duration, 's')}" if drive.torque else "the rotor runs down"

@@ -194,11 +194,11 @@ def brake_at_ports(ports: Ports, drive: Any) -> None:
 @compiled_for(DrivenRotor, 0.0)
 def turn_on(
     drive: DrivenRotor, rotor: RotorData, since: float, t: float, s: int, g: float, bodies: Array, angles: Array,
-    scratch: Scratch,
+    scratch: Scratch, least: float,
 ) -> float:  # fmt: skip
     """Let the torques turn the rotor in stage s at the time t of a step that begins at `since`: its speed and angle,
     first of `bodies` and `angles`, and what changes with them in the rotor. Returns by how much the stage was off: the
-    angle in rad, or a journal over its clearance.
+    angle in rad, or a journal or port over `least`, the smallest length of all in m.
 
     How the torques change with the speed, and the reaction with the acceleration, is taken in by Newton's method.
     """
@@ -237,7 +237,7 @@ def turn_on(
             journal[U_0, j] += g * scratch.selection[j, k] * change
     off = abs(speed - omega)
     for j in range(journal.shape[1]):
-        off = max(off, abs(journal[U_0, j] - journal[CORRECTION, j]) / rotor.clearances[j // 2])
+        off = max(off, abs(journal[U_0, j] - journal[CORRECTION, j]) / least)
     stage_a[i, s], stage_v[i, s] = turned, speed
     now[ALPHA], now[OMEGA], now[ANGLE] = turned, speed, angle
     bodies[0], angles[0] = speed, angle

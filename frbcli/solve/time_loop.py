@@ -204,7 +204,7 @@ def _solve_stage(
     weights, moments = tableau.stage, tableau.times
     g, m, allowed = weights[1, 1] * step, scratch.selection.shape[0], NEWTON_SHARE * control.tolerance
     selection, products, loads, spread, compliance, elimination, at, journal, stage_v, stage_a = scratch
-    newton, past, rings = own.newton, own.past, own.rings
+    newton, past, rings, least = own.newton, own.past, own.rings, _smallest(clearances, rotor.ports)
     t_s = t + moments[s] * step
     predict(weights, s, step, q, v, stage_v, stage_a, at)
     acceleration, speed, angle = stage_rotation(
@@ -237,11 +237,11 @@ def _solve_stage(
         left = max(left, left_at_ports(rotor.ports, clearances, compliance, g, journal))
         if share == 1.0:
             late = accelerate(s, g, lag, products, spread, selection, at, journal, stage_v, stage_a)
-            left = max(left, g * late / _smallest(clearances, rotor.ports))
+            left = max(left, g * late / least)
             if spins.shape[0] > 0 or turns_freely(rotor.drive):
                 left = max(left, spin_up(films, work, rotor, s, g, control, scratch, rings))
                 brake_at_ports(rotor.ports, rotor.drive)
-                left = max(left, turn_on(rotor.drive, rotor, t, t_s, s, g, rings.bodies, rings.angles, scratch))
+                left = max(left, turn_on(rotor.drive, rotor, t, t_s, s, g, rings.bodies, rings.angles, scratch, least))
                 if turns_freely(rotor.drive):
                     speed = rings.bodies[0]
                     lag = g * (speed - numbers[INVERSE_SPEED]) if rotor.has_gyroscopic else 0.0
@@ -249,7 +249,7 @@ def _solve_stage(
                 set_speeds(turning, rings.bodies, rings.angles, journal, grids)
                 set_sliding(control.rough, turning, rings.bodies)
                 turned = turn_cones(rotor.cones, rings.bodies, s, s, g, selection, at, stage_a, journal)
-                left = max(left, g * turned / _smallest(clearances, rotor.ports))
+                left = max(left, g * turned / least)
             if control.linearised or left < allowed:
                 past[HISTORY + s - 1, 0] = t_s
                 for i in range(m):

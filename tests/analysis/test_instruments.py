@@ -437,6 +437,22 @@ def test_a_rotor_that_starts_and_stops_misses_no_pulse() -> None:
     assert found.speed_Hz[middle] == pytest.approx(speed[middle], rel=0.02)
 
 
+@pytest.mark.parametrize("held_Hz", [4.0, 8.0])
+def test_the_angle_stays_at_the_pulses_of_a_slow_roll_with_a_run_up(held_Hz: float) -> None:
+    """A speed averaged over some revolutions misses a quarter of one where a slow rotor begins to speed up; the angle
+    behind that still is the one of the pulses, to which the phases of balancing refer."""
+    time = np.arange(0.0, 16.0, 1e-4)
+    speed = held_Hz + 6.0 * np.maximum(time - 4.0, 0.0)
+    turn = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
+    found = tacho_speed(time, pulse(turn), 1)
+    assert found.mark is not None
+    integrated = np.cumsum(found.speed_Hz) * 1e-4 - found.mark
+    late = (time > 7.0) & (time < 15.0)
+    off = integrated[late] - turn[late]
+    assert off - np.round(off.mean()) == pytest.approx(0.0, abs=0.015)
+    assert found.speed_Hz[late] == pytest.approx(speed[late], rel=5e-3)
+
+
 def test_a_wheel_with_uneven_teeth_misses_none() -> None:
     signal = np.maximum(pulse(TURN), pulse(TURN - 0.25))
     found = tacho_speed(TIME, signal, 2)

@@ -138,6 +138,9 @@ def test_the_plan_names_the_drive_and_its_top_speed() -> None:
     told = {made.choice: made.value for made in make_plan(case_from_dict(MACHINE | {"drive": drive}, "plan")).decisions}
     assert (told["speed"], told["drive"], told["load"]) == ("free", "0.05 N*m", "0.0001 N*m*s")
     assert told["governor"] == "40 Hz"
+    drive = {"torque": [["0 s", "0.1 N*m"], ["0.1 s", "0.1 N*m"]], "duration": "0.3 s"}
+    reasons = {made.choice: made.reason for made in make_plan(case_from_dict(MACHINE | {"drive": drive})).decisions}
+    assert reasons["drive"] == "2 points over the time, 0 to 0.1 s, constant beyond"
     slope = TORQUE / (0.02 * 80.0 * math.pi)  # N m s: by how much the governor takes the torque away
     assert float(told["top speed"].split()[0]) == pytest.approx(40.0 * slope / (slope + BRAKES), rel=1e-3)
 
@@ -290,6 +293,17 @@ def on_balls(friction: dict[str, object], start: str, duration: str, **bearing: 
             "bearing": BALLS | {"friction": friction} | bearing,
             "drive": {"start": start, "duration": duration}}  # fmt: skip
     return case_from_dict(data, "balls")
+
+
+def test_loaded_balls_brake_a_rotor_that_also_moves(tmp_path: Path) -> None:
+    """J omega' = T - 2 f_1 D F with unbalance and weight: the sum F of the ball loads hardly changes with them."""
+    case = on_balls({"f1": 1e-3}, "1 Hz", "0.05 s")
+    case = case.with_settings("rotor.unbalance=5e-6 kg*m", "rotor.gravity=9.81 m/s^2", "rotor.mass=2 kg",
+                              "rotor.polar_inertia=1e-3 kg*m^2", "drive.torque=0.05 N*m")  # fmt: skip
+    run = frbcli.runup(case, tmp_path / "run.h5")
+    braked = 2.0 * 1e-3 * 0.02 * 80.0 / math.sin(run["ball_contact_angle_rad"][-1])
+    assert run.status == "finished"
+    assert run["speed_Hz"][-1] == pytest.approx(1.0 + (0.05 - braked) / 1e-3 * 0.05 / TURN, rel=0.02)
 
 
 @pytest.mark.parametrize("rows", ["single", "tandem"])

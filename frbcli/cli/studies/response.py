@@ -96,7 +96,7 @@ def command(
     _show(terminal, motion, reduced, bool(speeds))
     machine = machine_document(terminal, case, speeds[-1]) if speeds else {}
     limits = None if operating is None else vibration_limits(motion, operating)
-    quality = None if grade is None else balance_quality(case, grade, operating[1] if operating else None)
+    quality = None if grade is None else balance_quality(motion.case, grade, operating[1] if operating else None)
     if limits is not None:
         show_limits(terminal, limits)
     if quality is not None:
@@ -253,6 +253,7 @@ def show_limits(terminal: Terminal, limits: VibrationLimits) -> None:
         ISO,
         ISO_FORMULA,
         ISO_POINTS,
+        MARGIN_FORMULA,
         MARGINS,
         beyond_iso,
     )
@@ -283,8 +284,7 @@ def show_limits(terminal: Terminal, limits: VibrationLimits) -> None:
     if limits.margins:
         terminal.show(f"{API}: separation margins", table_of(MARGINS, limits.margins))
         terminal.sentence(
-            "required: 0 for a factor AF below 2.5, else 17 (1 - 1 / (AF - 1.5)) % below the range of operation, 10 % "
-            "more above it."
+            f"required: {MARGIN_FORMULA}. The factor AF is the speed over the width of the peak at 0.707 of its height."
         )
 
 
@@ -303,7 +303,7 @@ def show_grade(terminal: Terminal, grade: BalanceQuality) -> None:
 def limits_document(limits: VibrationLimits) -> dict[str, object]:
     """As JSON."""
     from frbcli.columns import documents
-    from frbcli.linear.damped_modes import API_FORMULA, API_POINTS, ISO_FORMULA, ISO_POINTS, MARGINS
+    from frbcli.linear.damped_modes import API_FORMULA, API_POINTS, ISO_FORMULA, ISO_POINTS, MARGIN_FORMULA, MARGINS
 
     return {
         "operating_Hz": limits.operating_Hz,
@@ -311,6 +311,7 @@ def limits_document(limits: VibrationLimits) -> dict[str, object]:
         "api_617": {"formula": API_FORMULA, "points": documents(API_POINTS, limits.api)},
         "iso_20816_3": {"formula": ISO_FORMULA, "points": documents(ISO_POINTS, limits.iso)},
         "whirling_Hz": limits.whirling_Hz,
+        "margin_formula": MARGIN_FORMULA,
         "margins": documents(MARGINS, limits.margins),
     }
 

@@ -4,10 +4,11 @@ ISO/TS 16281 (basic reference rating life), which is L10 = (C / P)^3 of ISO 281 
 281 assumes: with gamma = d cos(alpha) / D, i rows of Z balls and
 
     rho = 1.044 ((1 - gamma) / (1 + gamma))^1.72 (f_i / f_o (2 f_o - 1) / (2 f_i - 1))^0.41
-    Q_ci = C / (0.407 Z (i cos alpha)^0.7) (1 + rho^(10/3))^0.3
-    Q_ce = C / (0.389 Z (i cos alpha)^0.7) (1 + rho^(-10/3))^0.3
+    Q_ci = C / (0.407 Z i^0.7 cos alpha) (1 + rho^(10/3))^0.3
+    Q_ce = C / (0.389 Z i^0.7 cos alpha) (1 + rho^(-10/3))^0.3
 
-a ring that turns bears the cubic mean of the loads, one that stands their mean with the power 10/3.
+where alpha is 0 of a deep groove. A ring that turns bears the cubic mean of the loads, one that stands their mean with
+the power 10/3.
 """
 
 from __future__ import annotations
@@ -272,10 +273,12 @@ STANDING, TURNING, WEIBULL = 10.0 / 3.0, 3.0, 0.9
 def rating_life(bearing: BallBearing, balls: Balls, rating: float) -> float:
     """L10 in revolutions under the loads of the balls of each row; rating: C of the whole bearing in N. Infinite
     without a load."""
-    gamma, f_i, f_o = bearing.gamma, bearing.inner, bearing.outer
+    angle = 0.0 if bearing.deep_groove else bearing.contact_angle
+    gamma = bearing.ball_diameter * math.cos(angle) / bearing.pitch_diameter
+    f_i, f_o = bearing.inner, bearing.outer
     grooves = f_i / f_o * (2.0 * f_o - 1.0) / (2.0 * f_i - 1.0)
     rho = 1.044 * ((1.0 - gamma) / (1.0 + gamma)) ** 1.72 * grooves**0.41
-    each = rating / (bearing.balls * (bearing.rows * math.cos(bearing.contact_angle)) ** 0.7)
+    each = rating / (bearing.balls * bearing.rows**0.7 * math.cos(angle))
     inner = each / 0.407 * (1.0 + rho**STANDING) ** 0.3
     outer = each / 0.389 * (1.0 + rho**-STANDING) ** 0.3
     bears_inner = float(np.mean(balls.inner_load**TURNING)) ** (1.0 / TURNING)

@@ -191,6 +191,11 @@ def symmetric_stations(positions: Array, maps: Array) -> Stations:
 BENT = 21  # places along a shaft that bends
 
 
+def _unbalance_of(rotor: RigidRotor | JeffcottRotor) -> complex:
+    """In kg m, as a vector on the rotor, with a loss from the beginning."""
+    return cmath.rect(*with_loss(rotor.unbalance, 0.0, rotor.loss))
+
+
 @dataclass(frozen=True)
 class RigidShaft(Shaft):
     """One mass that does not tilt."""
@@ -219,7 +224,7 @@ class RigidShaft(Shaft):
 
     @property
     def planes(self) -> tuple[BalancingPlane, ...]:
-        return (BalancingPlane("journal", "journal", None, complex(self.rotor.unbalance)),)
+        return (BalancingPlane("journal", "journal", None, _unbalance_of(self.rotor)),)
 
     @property
     def dampings(self) -> tuple[tuple[str, float, str, str], ...]:
@@ -276,7 +281,7 @@ class JeffcottShaft(Shaft):
 
     @property
     def planes(self) -> tuple[BalancingPlane, ...]:
-        return (BalancingPlane("disk", "disk", None, complex(self.rotor.unbalance)),)
+        return (BalancingPlane("disk", "disk", None, _unbalance_of(self.rotor)),)
 
     @property
     def dampings(self) -> tuple[tuple[str, float, str, str], ...]:

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from ball_bearings import STEEL, A, B, solve_plain
+from ball_bearings import NITRIDE, STEEL, A, B, solve_plain
 from paths import DATA
 
-from frbcli.elements.ball import BallBearing, at_displacement
-from frbcli.elements.ball_force import ball_bearing_force
+from frbcli.elements.ball import BallBearing, Balls, at_displacement
+from frbcli.elements.ball_force import ball_bearing_force, ball_friction
 from frbcli.linear.sheets.ball import rating_life, under_load
 
 BEARINGS = {"A": A, "B": B}
@@ -120,6 +120,23 @@ def test_forces_on_each_ball_are_in_balance() -> None:
     assert radial == pytest.approx(-A.centrifugal * omega**2, rel=1e-6)
 
 
+@pytest.mark.parametrize("omega", [0.0, 1e-3])
+def test_balls_that_the_inner_ring_has_left_bear_no_load_of_it(omega: float) -> None:
+    """A bearing from outside, 14 balls of 5.556 mm at 25 deg, preload 50 N and load 100 N: an independent program has
+    five balls under load and 39.60971 N on the largest."""
+    bearing = BallBearing(14, 5.556e-3, 37e-3, math.radians(25.0), 0.52, 0.52, NITRIDE, STEEL, preload=50.0)
+    found = under_load(bearing, np.array([0.0, -100.0]), omega)
+    assert found.displacement[1:] == pytest.approx([-4.38712e-6, -3.28395e-6], rel=1e-4)
+    assert found.balls.inner_load.max() == pytest.approx(39.60971, rel=1e-4)
+    assert np.count_nonzero(found.balls.inner_load > 1e-6) == 5
+    assert np.count_nonzero(found.balls.outer_load > 1e-6) == 5
+    friction = replace(bearing, f_1=0.001).numbers
+    memory = bearing.memory
+    ball_bearing_force(friction, *found.displacement[:2].tolist(), omega, 0.0, memory)
+    torque = ball_friction(friction, omega, memory)[0]
+    assert torque == pytest.approx(-0.001 * 37e-3 * found.balls.inner_load.sum(), rel=1e-9)
+
+
 def test_rings_within_their_clearance_carry_nothing() -> None:
     """cos(alpha_0) = 1 - G / (2 A): along a radius the ring meets a ball after half of the clearance."""
     clearance = 12e-6
@@ -166,3 +183,19 @@ def test_life_under_a_radial_load_is_that_of_iso_281(grooves: tuple[float, float
     found = under_load(bearing, np.array([0.0, -load]), 0.0)
     assert rating_life(bearing, found.balls, rating) == pytest.approx(1e6 * (rating / load) ** 3, rel=2e-3)
     assert rating_life(bearing, at_displacement(bearing, np.zeros(2), 0.0).balls, rating) == math.inf
+
+
+@pytest.mark.parametrize("angle", [0.0, 15.0, 40.0])
+@pytest.mark.parametrize("rows", [1, 2])
+@pytest.mark.parametrize("deep", [False, True])
+def test_life_of_half_the_balls_under_load_is_that_of_iso_281(angle: float, rows: int, deep: bool) -> None:
+    """Loads Q cos(psi)^1.5 on half of the circle at an angle alpha carry the radial load i Z Q J cos(alpha) with J =
+    0.2288, for which P is the load. What a deep groove bears at no angle does not depend on its clearance."""
+    alpha, rating = math.radians(angle), 10e3
+    bearing = replace(RADIAL, contact_angle=alpha, rows=rows, deep_groove=deep)
+    around = 2.0 * math.pi * np.arange(RADIAL.balls) / RADIAL.balls
+    loads = 50.0 * np.maximum(np.cos(around), 0.0) ** 1.5
+    at = np.full(RADIAL.balls, alpha)
+    carried = rows * RADIAL.balls * 50.0 * 0.2288 * (1.0 if deep else math.cos(alpha))
+    found = rating_life(bearing, Balls(around, at, at, loads, loads), rating)
+    assert found == pytest.approx(1e6 * (rating / carried) ** 3, rel=2e-3)

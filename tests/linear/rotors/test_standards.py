@@ -136,10 +136,11 @@ def test_zones_and_limits_are_those_of_the_standards() -> None:
 
 @pytest.mark.parametrize(("speed", "factor", "asked"), [
     (80.0, 2.49, 0.0), (80.0, 2.5, 0.0), (80.0, 10.0, 0.15), (130.0, 2.49, 0.0), (130.0, 2.5, 0.10),
-    (130.0, 10.0, 0.25), (110.0, 10.0, 0.15), (130.0, None, None),
+    (130.0, 10.0, 0.25), (110.0, 10.0, 0.15), (130.0, None, None), (80.0, 18.5, 0.16), (80.0, 50.0, 0.16),
+    (130.0, 50.0, 0.26), (80.0, 15.0, 0.17 * (1.0 - 1.0 / 13.5)),
 ])  # fmt: skip
 def test_the_margin_grows_with_the_amplification_factor(speed: float, factor: float | None, asked: float) -> None:
-    """17 (1 - 1 / 8.5) = 15 %, and 10 % more above the range."""
+    """17 (1 - 1 / 8.5) = 15 %, at most 16 %, and 10 % more above the range."""
     found = required_margin(speed, factor, (100.0, 120.0))
     assert found == (None if asked is None else pytest.approx(asked, abs=1e-12))
 
@@ -165,6 +166,7 @@ def test_the_command_says_what_is_within(tmp_path: Path, capsys: pytest.CaptureF
     document = json.loads(said.out)
     assert max(map(len, text.splitlines())) <= 80
     limits, grade = document["limits"], document["grade"]
+    assert limits["margin_formula"] in " ".join(text.split())
     assert limits["operating_Hz"] == limits["covered_Hz"] == [150.0, 200.0]
     assert {150.0, 200.0} <= {point["speed_Hz"] for point in document["points"]}
     assert set(limits["api_617"]["points"][0]) == {
@@ -178,6 +180,20 @@ def test_the_command_says_what_is_within(tmp_path: Path, capsys: pytest.CaptureF
     assert "ISO" not in capsys.readouterr().out  # nothing of it unless it is asked for
     assert frb([*words, "--operating", "350..500 Hz"]) == 0
     assert "350 to 400 Hz alone" in " ".join(capsys.readouterr().out.split())
+
+
+@pytest.mark.parametrize("table", ["rotor", "disk"])
+def test_a_grade_counts_what_is_lost(table: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """10 g mm and 20 g mm a quarter turn ahead are 500^(1/2) g mm, from the beginning or after the loss."""
+    name, place = ("jeffcott", "rotor") if table == "rotor" else ("turbocharger-ball", "disk.0")
+    for time, more in (("0 s", []), ("0.1 s", ["--after-loss"])):
+        loss = f'{place}.loss={{time="{time}", unbalance="20 g*mm", phase="90 deg"}}'
+        settings = [f"{place}.unbalance=10 g*mm", loss, *(["film.theory=short"] if table == "rotor" else [])]
+        words = ["response", name, "--no-picture", "--json", "--speed", "50 Hz", "--grade", "G2.5", *more]
+        assert frb([*words, *(word for each in settings for word in ("--set", each))]) == 0
+        first = json.loads(capsys.readouterr().out)["grade"]["planes"][0]
+        assert first["unbalance_kg_m"] == pytest.approx(math.sqrt(500.0) * 1e-6, rel=1e-9)
+        assert first["angle_deg"] == pytest.approx(math.degrees(math.atan2(2.0, 1.0)), abs=1e-6)
 
 
 @pytest.mark.parametrize("grade", ["Gx", "0", "-2.5", "G", "G1e9", "nan", "2.5 mm"])
