@@ -34,7 +34,7 @@ YOUNG = 300_000
 # Files that take longest, first: a worker that began one of them last would be waited for alone. Neighbours begin at
 # the same time: they compile no time loop for the same machine.
 LONGEST = (
-    "test_heat_run", "test_command_line", "test_resumed", "test_port_cycles", "test_given_flow_run", "test_rough_runs",
+    "test_heat_run", "test_command_line", "test_resumed", "test_port_cycles", "test_given_flow", "test_rough_runs",
     "test_oil_cycles", "test_drive", "test_inputs", "test_cosimulation", "test_balance", "test_work_lost",
     "test_streams", "test_pressed_contact", "test_bearing_sheet", "test_compiled", "test_kinked_cycles",
     "test_film_records", "test_coefficients_alone", "test_shot_branch", "test_limit_cycles",

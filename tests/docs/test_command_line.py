@@ -20,7 +20,7 @@ TEXTS = ("--help", "--version", "cases jeffcott", "schema", "docs conventions --
 # Said on slow machines, and where kernels are not compiled yet
 LEFT, COUNT, COMPILING = r".*(?:\d:\d\d|\?) left.*", r"(?:frame )?\d+ of \d+", "Compiling the kernels, once.*"
 PROGRESS = re.compile(rf"^(?:{LEFT}|{COUNT}|{COMPILING})\n", re.MULTILINE)
-# Their documents: test_cli_limit_cycles.py, that of the same picture that does not move, test_fit.py
+# Their documents: test_cli_stability.py, that of the same picture that does not move, test_fit.py
 LONG = (
     "limit-cycles my.toml --set film.theory=short --csv cycles.csv",
     "plot run.h5 --what orbit --animate",
