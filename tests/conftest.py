@@ -20,6 +20,7 @@ if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
 if "PYTEST_XDIST_WORKER" in os.environ:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+from commands import Frb
 from round_off import round_off
 
 round_off.install()
@@ -56,6 +57,12 @@ def perturbed_round_off(request: pytest.FixtureRequest) -> Iterator[None]:
         return
     with round_off.on(request.node.nodeid, seed):
         yield
+
+
+@pytest.fixture
+def frb(capsys: pytest.CaptureFixture[str]) -> Frb:
+    """The command, with what it says: `frb("check", "jeffcott", code=2).err`."""
+    return Frb(capsys)
 
 
 # Folders whose tests draw pictures: each picture is looked at.

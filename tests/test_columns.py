@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from commands import Frb
 from helpers.screen import seen
 from pages import column_tables
 
 from frbcli.cli.common import Terminal
-from frbcli.cli.main import run
 from frbcli.columns import ENTRIES, Column, Shown, heads, keys, legend, named, spread_table, table_of
 from frbcli.results.write import harmless_text, write_table
 from frbcli.units import with_uncertainty
@@ -175,10 +175,9 @@ def test_a_table_is_its_title_its_heads_a_line_and_its_rows(capsys: pytest.Captu
     assert (row.split(), below.split()) == (["1", "xxxx", "y"], ["2"])
 
 
-def test_errors_fit_the_screen_without_a_word_cut(capsys: pytest.CaptureFixture[str]) -> None:
+def test_errors_fit_the_screen_without_a_word_cut(frb: Frb) -> None:
     """In a pipe a fault is one line, which programs can read; on a terminal all of the same words are there."""
-    assert run(WRONG) == 2
-    piped = capsys.readouterr().err
+    piped = frb(*WRONG, code=2).err
     shown = seen(WRONG, environment={"COLUMNS": "80"})
     assert shown.code == 2
     assert max(map(len, piped.splitlines())) > 80 >= max(map(len, shown.text.splitlines()))

@@ -6,11 +6,11 @@ import math
 from pathlib import Path
 
 import pytest
+from commands import Frb
 
 from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.reading.shipped import hard_cases, shipped_names
-from frbcli.cli.main import run as frb
 from frbcli.errors import Fault, InputError
 from frbcli.materials import walther
 from frbcli.runs.run import run_cost
@@ -93,35 +93,31 @@ def test_a_multigrade_needs_no_sae() -> None:
         ("speed.to=18.000 rpm", "can be 18 rpm or 18000 rpm"),
     ],
 )
-def test_a_word_of_an_engineer_is_answered(setting: str, said: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["check", "jeffcott", "--set", setting]) == 2
-    told = capsys.readouterr().err
+def test_a_word_of_an_engineer_is_answered(setting: str, said: str, frb: Frb) -> None:
+    told = frb("check", "jeffcott", "--set", setting, code=2).err
     assert said in told
     assert told.count("\n") == 2  # the case and one fault: consequences are not listed
 
 
-def test_a_misspelt_rotor_is_one_fault(capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["check", "jeffcott", "--set", "rotor.kind=rigidd"]) == 2
+def test_a_misspelt_rotor_is_one_fault(frb: Frb) -> None:
+    said = frb("check", "jeffcott", "--set", "rotor.kind=rigidd", code=2)
     fault = '  rotor.kind = "rigidd": is not known here. Did you mean "rigid"?'
-    assert capsys.readouterr().err.splitlines()[1:] == [fault]
+    assert said.err.splitlines()[1:] == [fault]
 
 
-def test_a_run_is_an_hdf5_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_is_an_hdf5_file(tmp_path: Path, frb: Frb) -> None:
     picture = tmp_path / "run.png"
-    assert frb(["runup", "jeffcott", "-o", str(picture), "--set", "speed.duration=0.01 s"]) == 2
-    assert "Write -o run.h5." in capsys.readouterr().err
+    said = frb("runup", "jeffcott", "-o", str(picture), "--set", "speed.duration=0.01 s", code=2)
+    assert "Write -o run.h5." in said.err
     assert not picture.exists()
 
 
-def test_a_case_is_no_run_and_a_run_no_case(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["plot", "jeffcott"]) == 2
-    assert "`frb runup CASE -o RUN.h5` makes one of a case" in capsys.readouterr().err
+def test_a_case_is_no_run_and_a_run_no_case(tmp_path: Path, frb: Frb) -> None:
+    assert "`frb runup CASE -o RUN.h5` makes one of a case" in frb("plot", "jeffcott", code=2).err
     run = tmp_path / "run.h5"
     settings = ["--set", "speed.duration=0.01 s", "--set", "film.theory=short"]
-    assert frb(["runup", "jeffcott", "-o", str(run), "--no-picture", "--quiet", *settings]) == 0
-    capsys.readouterr()
-    assert frb(["check", str(run)]) == 2
-    assert "is a run file: `frb plot`, `frb waterfall` and `frb report` show it" in capsys.readouterr().err
+    frb("runup", "jeffcott", "-o", str(run), "--no-picture", "--quiet", *settings)
+    assert "is a run file: `frb plot`, `frb waterfall` and `frb report` show it" in frb("check", str(run), code=2).err
 
 
 @pytest.mark.parametrize(
@@ -132,12 +128,9 @@ def test_a_case_is_no_run_and_a_run_no_case(tmp_path: Path, capsys: pytest.Captu
         ("turbocharger-car", ["bearing.0.name=turbine-side", "bearing.1.name=compressor-side"], "stands nearer to"),
     ],
 )
-def test_what_contradicts_itself_is_remarked(
-    case: str, settings: list[str], said: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_contradicts_itself_is_remarked(case: str, settings: list[str], said: str, frb: Frb) -> None:
     words = [word for setting in settings for word in ("--set", setting)]
-    assert frb(["check", case, *words, "--json", "--quiet"]) == 0
-    assert any(said in remark for remark in json.loads(capsys.readouterr().out)["remarks"])
+    assert any(said in remark for remark in frb("check", case, *words, "--json", "--quiet").document["remarks"])
 
 
 def test_shipped_cases_have_nothing_to_remark() -> None:
@@ -242,19 +235,17 @@ def test_no_shipped_or_hard_case_needs_a_confirmation() -> None:
 # --- numbers without a unit ---
 
 
-def test_check_tells_which_numbers_had_no_unit(capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_tells_which_numbers_had_no_unit(frb: Frb) -> None:
     words = ["check", "turbocharger-car", "--set", "disk.1.mass=0.025", "--set", "speed.to=300", "--json"]
     words += ["--set", "bearing.0.inner.clearance=15e-6", "--set", "rotor.modal_damping=0.001"]
-    assert frb(words) == 0
-    out, err = capsys.readouterr()
+    out, err = frb(*words)
     assert json.loads(out)["bare_numbers"] == [
         {"key": "disk.1.mass", "value": 0.025, "unit": "kg"},
         {"key": "bearing.0.inner.clearance", "value": 1.5e-05, "unit": "m"},
         {"key": "speed.to", "value": 300.0, "unit": "Hz"},
     ]
     assert "Note" not in out + err
-    assert frb(words[:6] + words[7:]) == 0
-    out, err = capsys.readouterr()
+    out, err = frb(*words[:6] + words[7:])
     assert "Note: speed.to = 300: no unit, read as Hz." in out + err
     assert "Note: disk.1.mass = 0.025: no unit, read as kg." in out + err
     assert "damping = 0.001: no unit" not in out + err  # it has none

@@ -1,7 +1,6 @@
 """Options that several commands have are one option, with the unit of speeds; the example in each help can be called;
 what a shell completes; what a process of `frb` imports."""
 
-import json
 import os
 import re
 import shlex
@@ -15,12 +14,12 @@ import numpy as np
 import pytest
 from click.shell_completion import ShellComplete
 from click.testing import CliRunner
+from commands import Frb
 
 from frbcli.case.film import THEORIES, Coupling
 from frbcli.case.reading.load import load_case
-from frbcli.cli.main import COMMANDS, GROUPS, command_named, run
+from frbcli.cli.main import COMMANDS, GROUPS, command_named
 from frbcli.cli.main import frb as group
-from frbcli.cli.main import run as frb
 from frbcli.cli.options import UnitOption
 from frbcli.cli.process import main
 from frbcli.film.cavitation.table import names as cavitations
@@ -72,10 +71,9 @@ def test_choices_are_shown_and_defaults_have_one_style() -> None:
     ["waterfall", "--foo"], ["nothing"], ["plot"], ["runup", "jeffcott", "-o", "run.txt"], ["check", "nothing"],
     ["limit-cycles", "jeffcott", "--parameter", "speed"],
 ])  # fmt: skip
-def test_errors_have_one_form(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_errors_have_one_form(words: list[str], frb: Frb) -> None:
     """Subject, then a line for each fault: what it is of, what is wrong, what to do."""
-    assert run(words) == 2
-    said = capsys.readouterr()
+    said = frb(*words, code=2)
     subject, *faults = said.err.splitlines()
     assert said.out == ""
     assert re.fullmatch(r"frb: .+", subject)
@@ -155,15 +153,14 @@ def test_a_shell_is_given_its_script(shell: str) -> None:
     assert "_FRB_COMPLETE" in done.stdout, done.stderr
 
 
-def test_an_option_of_other_commands_leads_there(capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["limit-cycles", "jeffcott", "--over", "oil.viscosity='8..14 mPa*s'"]) == 2
-    assert "`frb limit-cycles --parameter`" in " ".join(capsys.readouterr().err.split())
+def test_an_option_of_other_commands_leads_there(frb: Frb) -> None:
+    said = frb("limit-cycles", "jeffcott", "--over", "oil.viscosity='8..14 mPa*s'", code=2)
+    assert "`frb limit-cycles --parameter`" in " ".join(said.err.split())
 
 
 @pytest.mark.parametrize("words", [["response", "seal", "--map"], ["stability", "seal", "-o", "a.png"]])
-def test_a_picture_that_is_asked_for_is_not_left_out(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    assert run([*words, "--no-picture"]) == 2
-    assert "names the picture that --no-picture leaves out" in capsys.readouterr().err
+def test_a_picture_that_is_asked_for_is_not_left_out(words: list[str], frb: Frb) -> None:
+    assert "names the picture that --no-picture leaves out" in frb(*words, "--no-picture", code=2).err
 
 
 PER_MINUTE = ("--set", "speed.to=18000 rpm")
@@ -181,17 +178,15 @@ SPOKEN: dict[str, tuple[tuple[str, ...], str]] = {
 
 @pytest.mark.parametrize("name", list(SPOKEN))
 def test_text_is_in_the_unit_of_the_case_and_json_in_hertz(
-    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, frb: Frb
 ) -> None:
     monkeypatch.chdir(tmp_path)
     words, told = SPOKEN[name]
     documents = {}
     for unit, settings in (("rpm", PER_MINUTE), ("Hz", HERTZ)):
-        assert frb([*words, *settings]) == 0
-        text = " ".join(capsys.readouterr().out.split())
+        text = " ".join(frb(*words, *settings).out.split())
         assert (re.search(told, text) is not None) == (unit == "rpm"), text
-        assert frb([*words, *settings, "--json", "--quiet"]) == 0
-        documents[unit] = without_times(json.loads(capsys.readouterr().out))
+        documents[unit] = without_times(frb(*words, *settings, "--json", "--quiet").document)
     assert documents["rpm"] == documents["Hz"]
 
 
@@ -202,13 +197,10 @@ def without_times(document: object) -> object:
     return [without_times(value) for value in document] if isinstance(document, list) else document
 
 
-def test_an_option_in_rpm_turns_the_text_to_rpm(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_option_in_rpm_turns_the_text_to_rpm(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, frb: Frb) -> None:
     monkeypatch.chdir(tmp_path)
     for asked in (("--speed", "3000 rpm"), ("--speed", "50 Hz", "--rpm")):
-        assert frb(["stability", "jeffcott", "--no-picture", *asked]) == 0
-        said = capsys.readouterr().out
+        said = frb("stability", "jeffcott", "--no-picture", *asked).out
         assert re.search(r"^ +rpm ", said, re.MULTILINE)
         assert re.search(r"^ +3000 ", said, re.MULTILINE)
 
@@ -233,9 +225,7 @@ def test_speeds_in_words() -> None:
     assert per_minute.cell(None) == "-"
 
 
-def test_a_measurement_with_speeds_per_minute_is_shown_in_them(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_measurement_with_speeds_per_minute_is_shown_in_them(tmp_path: Path, frb: Frb) -> None:
     time = np.arange(20_000) * 2.5e-4
     speed = 600.0 + 3000.0 * time
     angle = np.cumsum(speed / 60.0) * 2.5e-4 * 2.0 * np.pi
@@ -244,10 +234,9 @@ def test_a_measurement_with_speeds_per_minute_is_shown_in_them(
     file = tmp_path / "measured.csv"
     np.savetxt(file, np.c_[time, speed, x, y], delimiter=",", header="time_s,speed_rpm,x_um,y_um", comments="")
     words = ["waterfall", str(file), "--x", "x_um", "--y", "y_um", "--time", "time_s", "--speed-column", "speed_rpm"]
-    assert frb([*words, "--clearance", "30 um", "-o", str(tmp_path / "w.svg")]) == 0
-    assert "speed, rpm" in capsys.readouterr().out
+    assert "speed, rpm" in frb(*words, "--clearance", "30 um", "-o", str(tmp_path / "w.svg")).out
     assert "rotor speed in rpm" in (tmp_path / "w.svg").read_text(encoding="utf-8")
-    assert frb([*words, "--linear", "-o", str(tmp_path / "linear.svg")]) == 0  # amplitudes refer to no clearance
+    frb(*words, "--linear", "-o", str(tmp_path / "linear.svg"))  # amplitudes refer to no clearance
 
 
 # A command as the console script calls it, and which of some libraries it has imported

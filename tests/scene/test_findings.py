@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from commands import Frb
 from paths import DATA
 from scipy.integrate import solve_ivp
 from scipy.optimize import fsolve
@@ -18,7 +19,7 @@ from scipy.optimize import fsolve
 import frbcli
 from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
 from frbcli.case.schema import Case
-from frbcli.cli.main import run as frb
+from frbcli.cli.main import run
 from frbcli.report.sketch import rotor_sketch
 from frbcli.runs.advice import accuracy_advice
 from frbcli.runs.run import runup
@@ -55,42 +56,34 @@ def test_bearings_carry_the_weight_and_outer_films_their_rings(name: str) -> Non
     assert found.mass == pytest.approx(solid + sum(disk.mass for disk in case.disks), rel=1e-9)
 
 
-def test_a_kinematic_test_has_its_load_or_none(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_kinematic_test_has_its_load_or_none(frb: Frb) -> None:
     found = findings(load_case("bearing"))
     assert (found.mass, found.frequencies_Hz) == (None, ())
     assert [film.load for film in found.films] == [29.9]
     assert findings(load_case("squeeze")).films == ()
-    assert frb(["check", "bearing", "--json"]) == 0
-    document = json.loads(capsys.readouterr().out)
+    document = frb("check", "bearing", "--json").document
     assert document["findings"]["films"][0]["load_N"] == 29.9
 
 
 @pytest.mark.parametrize("setting", ["bearing.1.position=42 mm", "shaft.0.youngs_modulus=1e-9 Pa"])
-def test_bearings_that_do_not_hold_the_rotor_have_no_static_load(
-    setting: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_bearings_that_do_not_hold_the_rotor_have_no_static_load(setting: str, frb: Frb) -> None:
     """At one place, or on a shaft like a string: both ended in a traceback."""
-    assert frb(["check", "turbocharger-car", "--set", setting]) == 0
-    assert "static loads" not in capsys.readouterr().out
-    assert frb(["stability", "turbocharger-car", "--set", setting, "--speed", "100 Hz", "--no-picture"]) in (0, 2, 3)
+    assert "static loads" not in frb("check", "turbocharger-car", "--set", setting).out
+    assert run(["stability", "turbocharger-car", "--set", setting, "--speed", "100 Hz", "--no-picture"]) in (0, 2, 3)
 
 
-def test_values_are_shown_on_demand_and_fit_the_screen(capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["check", "turbocharger-heavy"]) == 0
-    said = capsys.readouterr().out
+def test_values_are_shown_on_demand_and_fit_the_screen(frb: Frb) -> None:
+    said = frb("check", "turbocharger-heavy").out
     assert "youngs_modulus" not in said
-    assert frb(["check", "turbocharger-heavy", "--all"]) == 0
-    lines = [line.strip() for line in capsys.readouterr().out.splitlines()]
+    lines = [line.strip() for line in frb("check", "turbocharger-heavy", "--all").out.splitlines()]
     assert "[bearing.0.inner.clearance]" in lines
     assert any(line.startswith("reference_temperature ") for line in lines)
     assert max(map(len, lines)) <= 80
 
 
-def test_a_name_that_is_nearly_a_command_is_suggested(capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["stabilty", "jeffcott"]) == 2
-    assert 'Did you mean "stability"?' in capsys.readouterr().err
-    assert frb(["zzz"]) == 2
-    assert "Did you mean" not in capsys.readouterr().err
+def test_a_name_that_is_nearly_a_command_is_suggested(frb: Frb) -> None:
+    assert 'Did you mean "stability"?' in frb("stabilty", "jeffcott", code=2).err
+    assert "Did you mean" not in frb("zzz", code=2).err
 
 
 OWN = 'cavitation = "half-sommerfeld"'
@@ -243,15 +236,12 @@ def test_cone_and_what_has_none() -> None:
     assert all(film.cone == pytest.approx(2.0 * 50e-6 / 32e-3) for film in rings)
 
 
-def test_check_tells_a_tilt_that_matters(capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["check", "turbocharger-car", "--json"]) == 0
-    said = capsys.readouterr()
+def test_check_tells_a_tilt_that_matters(frb: Frb) -> None:
+    said = frb("check", "turbocharger-car", "--json")
     tilts = json.loads(said.out)["findings"]["tilts"]
     assert tilts[0]["cone_rad"] == pytest.approx(3.125e-3)
-    assert frb(["check", "turbocharger-car"]) == 0
-    assert "as journals tilt" in capsys.readouterr().out
-    assert frb(["check", "jeffcott"]) == 0
-    assert "tilt" not in capsys.readouterr().out
+    assert "as journals tilt" in frb("check", "turbocharger-car").out
+    assert "tilt" not in frb("check", "jeffcott").out
 
 
 OIL = ("speed.to=24 Hz", "speed.duration=0.8 s", "output.step=1 ms", "accuracy.target=1e-2")

@@ -11,13 +11,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import Frb
 
 from frbcli.arrays import Array
 from frbcli.case.reading import load
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cli import check
-from frbcli.cli.main import run as frb
 from frbcli.compiled import CompilationNeededError
 from frbcli.errors import NotConverged
 from frbcli.runs import march
@@ -135,30 +135,24 @@ def test_a_run_that_does_not_begin_leaves_the_error_to_its_cells(monkeypatch: py
     assert tried.tried_error(case, trial) is None
 
 
-def test_check_tells_what_was_tried_and_compiles_nothing_for_it(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_check_tells_what_was_tried_and_compiles_nothing_for_it(monkeypatch: pytest.MonkeyPatch, frb: Frb) -> None:
     case, trial = trial_of(RINGS, *LOOSE)
     assert trial is not None
     found = tried.tried_error(case, trial)
     assert found is not None
-    assert frb(["check", RINGS, "--json", "--set", *LOOSE]) == 0
-    expected = json.loads(capsys.readouterr().out)["expected"]
+    expected = frb("check", RINGS, "--json", "--set", *LOOSE).document["expected"]
     assert expected["eccentricity_error"] == pytest.approx(found.error)
     assert expected["tried_until_s"] == pytest.approx(found.until_s)
-    assert frb(["check", RINGS, "--set", *LOOSE]) == 0
-    assert "short runs on these and on 64 x 8 cells" in " ".join(capsys.readouterr().out.split())
+    assert "short runs on these and on 64 x 8 cells" in " ".join(frb("check", RINGS, "--set", *LOOSE).out.split())
 
     def needs_a_compiler(*_: object) -> None:
         raise CompilationNeededError
 
     monkeypatch.setattr(tried, "tried_error", needs_a_compiler)
-    assert frb(["check", RINGS, "--json", "--set", *LOOSE]) == 0
-    expected = json.loads(capsys.readouterr().out)["expected"]
+    expected = frb("check", RINGS, "--json", "--set", *LOOSE).document["expected"]
     assert expected["eccentricity_error"] == expected_error(trial.plan).eccentricity
     assert expected["tried_until_s"] is None
-    assert frb(["check", RINGS, "--set", *LOOSE]) == 0
-    assert check.BY_CELLS_WITH_RINGS + check.UNTRIED in " ".join(capsys.readouterr().out.split())
+    assert check.BY_CELLS_WITH_RINGS + check.UNTRIED in " ".join(frb("check", RINGS, "--set", *LOOSE).out.split())
     assert np.isfinite(found.speed_Hz)
 
 
@@ -202,14 +196,13 @@ def test_little_memory_is_told_in_one_line(kilobytes: int, tmp_path: Path) -> No
 
 @pytest.mark.parametrize("error", [MemoryError(), MemoryError("Unable to allocate 116. TiB for an array")])
 def test_memory_that_runs_out_later_is_told_in_one_line(
-    error: MemoryError, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    error: MemoryError, monkeypatch: pytest.MonkeyPatch, frb: Frb
 ) -> None:
     def fails(*_: object) -> None:
         raise error
 
     monkeypatch.setattr(load, "load_case", fails)
-    assert frb(["check", "jeffcott"]) == 1
-    told = capsys.readouterr().err
+    told = frb("check", "jeffcott", code=1).err
     assert told.count("\n") == 1
     assert told.startswith(f"frb: out of memory{f' ({error})' if str(error) else ''}.")
 

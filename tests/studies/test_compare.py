@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import Frb
 from synthetic_run import Rotor, as_run, signals
 
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
-from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
 from frbcli.film.cavitation.table import names
 from frbcli.plot.studies import comparison_figure
@@ -174,13 +174,11 @@ SETTINGS = [word for setting in QUICK for word in ("--set", setting)]
 
 
 def test_command_says_one_json_document_one_table_one_picture(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, frb: Frb
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert frb(["compare", "jeffcott", *SETTINGS, "--json"]) == 0
-    said = capsys.readouterr()
-    assert frb(["compare", "jeffcott", *SETTINGS]) == 0
-    text = capsys.readouterr().out
+    said = frb("compare", "jeffcott", *SETTINGS, "--json")
+    text = frb("compare", "jeffcott", *SETTINGS).out
     found = json.loads(said.out)
     assert list(found) == ["command", "case", "test", "results"]
     assert [found[key] for key in ("command", "case", "test")] == ["compare", "jeffcott", "runup"]
@@ -199,13 +197,11 @@ def test_command_says_one_json_document_one_table_one_picture(
     assert Path("jeffcott-compare.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_a_variant_that_ends_early_is_exit_3(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_variant_that_ends_early_is_exit_3(frb: Frb) -> None:
     words = ["--theory", "short", "--cavitation", f"{HALF},{FULL}", "--no-picture", "--json"]
-    assert frb(["compare", "jeffcott", *SETTINGS, *words, "--set", "contact.eccentricity=0.75"]) == 3
-    said = capsys.readouterr()
+    said = frb("compare", "jeffcott", *SETTINGS, *words, "--set", "contact.eccentricity=0.75", code=3)
     words.remove("--json")
-    assert frb(["compare", "jeffcott", *SETTINGS, *words, "--set", "contact.eccentricity=0.75"]) == 3
-    text = capsys.readouterr().out
+    text = frb("compare", "jeffcott", *SETTINGS, *words, "--set", "contact.eccentricity=0.75", code=3).out
     assert [result["status"] for result in json.loads(said.out)["results"]] == ["finished", "contact"]
     assert "sommerfeld short: contact at" in text
 

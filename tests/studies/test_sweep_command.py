@@ -12,11 +12,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import Frb
 from scipy.stats import norm, truncnorm
 from sweep_points import CLEARANCES, SHORT, TWO, VISCOSITIES
 
 from frbcli import Case, InputError, load_case
-from frbcli.cli.main import run as frb
 from frbcli.plot.studies import can_draw, sweep_figure
 from frbcli.studies.sweep import Sweep, SweepPoint, Workers, _wilson, scatter, sweep, whirl_speed, write_table
 from frbcli.studies.sweep_points import linked, read_correlation, read_distribution, read_values, samples
@@ -71,10 +71,9 @@ def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.usefixtures("elsewhere")
-def test_the_command_says_one_document_and_leaves_table_and_picture(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_says_one_document_and_leaves_table_and_picture(frb: Frb) -> None:
     words = ["sweep", "jeffcott", "--set", "film.theory=short", "--set", "oil.viscosity=8 mPa*s,12 mPa*s"]
-    assert frb([*words, "--stability", "--json", "--jobs", "2"]) == 0
-    told = capsys.readouterr()
+    told = frb(*words, "--stability", "--json", "--jobs", "2")
     document = json.loads(told.out)
     assert list(document) == ["command", "case", "points", "table", "picture"]
     assert [point["set"] for point in document["points"]] == [{"oil.viscosity": value} for value in VISCOSITIES]
@@ -96,18 +95,16 @@ def test_the_command_says_one_document_and_leaves_table_and_picture(capsys: pyte
     assert Path(document["picture"]).read_bytes().startswith(b"\x89PNG")
 
 
-def test_the_command_takes_a_list_and_tells_of_failures(elsewhere: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_takes_a_list_and_tells_of_failures(elsewhere: Path, frb: Frb) -> None:
     Path("points.csv").write_text("oil.viscosity,bearing.clearance\n8 mPa*s,35 um\n-8 mPa*s,35 um\n")
     words = ["sweep", "jeffcott", "--list", "points.csv", "--set", "film.theory=short", "--set", "speed.duration=0.3 s"]
-    assert frb([*words, "--json", "-o", "out", "--jobs", "2"]) == 3
-    told = capsys.readouterr()
+    told = frb(*words, "--json", "-o", "out", "--jobs", "2", code=3)
     good, bad = json.loads(told.out)["points"]
     assert (good["status"], good["run"]) == ("finished", str(elsewhere / "out" / "runs" / "001.h5"))
     assert (bad["status"], bad["events"], bad["cost"], bad["run"]) == ("input-error", [], {}, None)
     assert "greater than 0" in bad["message"]
     assert "did not finish" not in told.err
-    assert frb([*words, "--quiet", "-o", "out", "--jobs", "2"]) == 3
-    assert capsys.readouterr() == ("", "")
+    assert frb(*words, "--quiet", "-o", "out", "--jobs", "2", code=3) == ("", "")
 
 
 def children() -> list[Path]:
@@ -299,33 +296,28 @@ def test_which_machines_whirl_by_the_linear_theory(tmp_path: Path) -> None:
     assert 0.0 < whirl_speed(found.points[1]) < 250.0
 
 
-def test_the_command_samples_machines(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_command_samples_machines(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, frb: Frb) -> None:
     monkeypatch.chdir(tmp_path)
     words = ["sweep", "jeffcott", "--stability", "--jobs", "1", "--set", THEORY]
-    assert frb([*words, "--set", "bearing.clearance=normal(35 um, 1 um)", "--samples", "8", "--json", "--quiet"]) == 0
-    told = json.loads(capsys.readouterr().out)
+    told = frb(*words, "--set", "bearing.clearance=normal(35 um, 1 um)", "--samples", "8", "--json", "--quiet").document
     seen = told["scatter"]
     assert (seen["count"], seen["share"]) == (8, 1.0)
     assert abs(seen["sensitivities"][0]["rank"]) == pytest.approx(1.0)
     assert seen["explained"] > 0.95
     assert Path(told["picture"]).exists()
     both = [*words, "--set", "oil.viscosity=uniform(8, 9)", "--set", "bearing.clearance=30 um,35 um"]
-    assert frb([*both, "-o", "other"]) == 2
-    assert "while other keys scatter" in capsys.readouterr().err
+    assert "while other keys scatter" in frb(*both, "-o", "other", code=2).err
 
 
 def test_the_command_takes_ranges_and_links_and_gives_reasons(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, frb: Frb
 ) -> None:
     monkeypatch.chdir(tmp_path)
     words = ["sweep", "jeffcott", "--stability", "--jobs", "1", "--set", THEORY, "-o", "s", "--no-picture"]
-    assert frb([*words, "--set", "speed.to=20..250 Hz / 2; bearing.clearance=35 um,36 um"]) == 0
-    told = capsys.readouterr().out
+    told = frb(*words, "--set", "speed.to=20..250 Hz / 2; bearing.clearance=35 um,36 um").out
     assert "reason" in told
     assert "Stable" in told
-    assert frb([*words, "--set", "a=1,2; b=1,2,3"]) == 2
+    frb(*words, "--set", "a=1,2; b=1,2,3", code=2)
 
 
 @pytest.mark.skipif(find_spec("distributed") is None, reason="needs the extra frbcli[cluster]")

@@ -1,18 +1,17 @@
 """Steady heat: the balance of films, rings and walls, its limits, and machines that are warm. Kernels of the balance of
 heat against their plain forms."""
 
-import json
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import Frb
 from printed_sheets import printed
 
 from frbcli.bearing_tests.kinematic import rotation
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
-from frbcli.cli.main import run as frb
 from frbcli.equilibrium.static_machine import warm_machine
 from frbcli.errors import NotConverged
 from frbcli.linear.stability import stability
@@ -166,14 +165,13 @@ def test_flow_of_a_concentric_film_is_the_formula_with_a_groove() -> None:
         assert one.flow == pytest.approx(other.flow, rel=1e-4)
 
 
-def test_check_and_stability_tell_the_same_heat(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_and_stability_tell_the_same_heat(tmp_path: Path, frb: Frb) -> None:
     file = tmp_path / "ring.toml"
     file.write_text(RING)
     arguments = ["stability", str(file), "--set", CONCENTRIC, "--no-picture", "--json"]
-    assert frb([*arguments, "--speed", "900 Hz", "--speed", "300 Hz"]) == 0
-    fast, slow = (point["thermal"] for point in json.loads(capsys.readouterr().out)["points"])
-    assert frb(["check", str(file), "--set", CONCENTRIC, "--json"]) == 0
-    checked = json.loads(capsys.readouterr().out)["thermal"]
+    said = frb(*arguments, "--speed", "900 Hz", "--speed", "300 Hz")
+    fast, slow = (point["thermal"] for point in said.document["points"])
+    checked = frb("check", str(file), "--set", CONCENTRIC, "--json").document["thermal"]
     assert checked["films"][0]["temperature_K"] == pytest.approx(153.8 + ZERO, abs=0.1)
     assert slow["films"][0]["temperature_K"] == pytest.approx(103.2 + ZERO, abs=0.1)
     assert fast["rings"][0]["speed_ratio"] == pytest.approx(checked["rings"][0]["speed_ratio"], abs=1e-6)
@@ -182,13 +180,11 @@ def test_check_and_stability_tell_the_same_heat(tmp_path: Path, capsys: pytest.C
     assert checked["balance_relative"] < 1e-6
 
 
-def test_heat_is_told_in_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_heat_is_told_in_words(tmp_path: Path, frb: Frb) -> None:
     file = tmp_path / "ring.toml"
     file.write_text(RING)
-    assert frb(["check", str(file), "--json"]) == 0  # compiles what is not on disk
-    capsys.readouterr()
-    assert frb(["check", str(file)]) == 0
-    told = capsys.readouterr().out
+    frb("check", str(file), "--json")  # compiles what is not on disk
+    told = frb("check", str(file)).out
     assert "heat at the top speed" in told
     assert "W leave with the oil" in told
 
@@ -253,21 +249,21 @@ def test_rotation_has_the_film_whose_heat_balances(cavitation: str) -> None:
     assert result.loads.force == pytest.approx(same.loads.force, rel=1e-5)
 
 
-def test_rotation_under_a_load_with_heat_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+def test_rotation_under_a_load_with_heat_is_told(frb: Frb) -> None:
     """More load makes the film thinner and its oil hotter."""
     found = []
     for load in (100, 400):
         motion = f"motion={{load='{load} N', speed='50 Hz'}}"
         sets = [word for setting in [*WARM_ROTATION[:3], *WARM_ROTATION[4:], motion] for word in ("--set", setting)]
-        assert frb(["rotation", "bearing", *sets, "--cavitation", "half-sommerfeld", "--no-picture", "--json"]) == 0
-        (result,) = json.loads(capsys.readouterr().out)["results"]
+        said = frb("rotation", "bearing", *sets, "--cavitation", "half-sommerfeld", "--no-picture", "--json")
+        (result,) = said.document["results"]
         assert result["force_N"] == pytest.approx([0.0, load], abs=1e-3 * load)
         (film,) = result["thermal"]["films"]
         found.append((film["power_W"], film["flow_m3_s"], film["temperature_K"]))
     assert found[1][0] > found[0][0] * 0.9
     assert found[1][1] > found[0][1]  # an eccentric film loses more oil
-    assert frb(["rotation", "bearing", *sets, "--cavitation", "half-sommerfeld", "--no-picture"]) == 0
-    assert "the film when it is warm" in capsys.readouterr().out
+    said = frb("rotation", "bearing", *sets, "--cavitation", "half-sommerfeld", "--no-picture")
+    assert "the film when it is warm" in said.out
 
 
 def test_a_bearing_may_have_walls_and_supply_of_its_own() -> None:

@@ -1,17 +1,16 @@
 """Critical speeds of `response` against closed forms, and against the machine solved densely around them. Shafts in
 soft bearings at their ends: the reduction against the rotor with all its modes."""
 
-import json
 import math
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from commands import Frb
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict
-from frbcli.cli.main import run as frb
 from frbcli.linear.modes import own_reduction
 from frbcli.rotor.beam import BeamSection
 from frbcli.scene.machine.turbocharger import shaft_of
@@ -180,7 +179,7 @@ def test_peaks_on_films_are_where_the_machine_solved_there_has_them() -> None:
         assert peak.amplitude == pytest.approx(float(fit(top)), rel=1e-3)
 
 
-def test_speeds_of_operation_have_a_margin(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_speeds_of_operation_have_a_margin(frb: Frb, tmp_path: Path) -> None:
     path = tmp_path / "mass.toml"
     path.write_text(
         f"""
@@ -204,8 +203,7 @@ duration = "1 s"
         ("12000..15000 rpm", 1.0 - critical / 12000.0), ("100 Hz..120 Hz", critical / 7200.0 - 1.0),
         ("9000 rpm..200 Hz", 0.0),
     ):  # fmt: skip
-        assert frb(["response", str(path), "--operating", given, "--no-picture", "--json"]) == 0
-        document = json.loads(capsys.readouterr().out)
+        document = frb("response", str(path), "--operating", given, "--no-picture", "--json").document
         (peak,) = document["critical_speeds"]
         assert set(peak) == {
             "speed_Hz", "speed_uncertainty_Hz", "mode", "direction", "node", "amplitude_m", "amplification_factor",
@@ -213,10 +211,9 @@ duration = "1 s"
         }  # fmt: skip
         assert document["critical_speeds_Hz"] == [peak["speed_Hz"]]
         assert peak["separation_margin"] == pytest.approx(margin, abs=1e-4)
-    assert frb(["response", str(path), "--operating", "12000..15000 rpm", "--no-picture"]) == 0
-    assert "Critical speeds" in capsys.readouterr().out
-    assert frb(["response", str(path), "--operating", "15000..12000 rpm", "--no-picture"]) == 2
-    assert "does not ascend" in capsys.readouterr().err
+    assert "Critical speeds" in frb("response", str(path), "--operating", "12000..15000 rpm", "--no-picture").out
+    said = frb("response", str(path), "--operating", "15000..12000 rpm", "--no-picture", code=2)
+    assert "does not ascend" in said.err
 
 
 SPEEDS = [2.0, 80.0, 160.0]  # peaks between them are found
@@ -284,7 +281,7 @@ def test_static_modes_leave_no_flexibility_between_the_bearings() -> None:
 
 
 @pytest.mark.parametrize("command", ["check", "response", "stability"])
-def test_every_command_says_what_is_left_out(command: str, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_every_command_says_what_is_left_out(command: str, frb: Frb, tmp_path: Path) -> None:
     path = tmp_path / "shaft.toml"
     path.write_text(
         """
@@ -319,14 +316,12 @@ duration = "1 s"
         encoding="utf-8",
     )
     plain = [] if command == "check" else ["--no-picture"]
-    assert frb([command, str(path), *plain]) == 0
-    told = " ".join(capsys.readouterr().out.split())
+    told = " ".join(frb(command, str(path), *plain).out.split())
     assert "Reduction of the shaft to 6 free modes of each plane" in told
     assert "heights of peaks by at most" in told
     assert ("on bearings of any stiffness" in told) == (command == "check")
     assert ("on the stiffness of its own bearings" in told) == (command != "check")
-    assert frb([command, str(path), *plain, "--json"]) == 0
-    document = json.loads(capsys.readouterr().out)
+    document = frb(command, str(path), *plain, "--json").document
     found = document["findings"]["reduction"] if command == "check" else document["reduction"]
     assert found["free_modes"] == 6
     assert found["amplitude_relative"] > found["frequency_relative"]

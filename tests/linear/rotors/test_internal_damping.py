@@ -1,17 +1,16 @@
 """Damping that turns with the shaft: thresholds and growth against closed forms, by stability and by runs. Machines
 without damping: no motion grows, whatever round-off makes of it."""
 
-import json
 import math
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from commands import Frb
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict
-from frbcli.cli.main import run as frb
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.linear.stability import stability
 from frbcli.plot.machine.modes import campbell_figure
@@ -261,7 +260,7 @@ def test_an_undamped_rotor_becomes_unstable_where_cross_coupling_passes_half_the
     assert found.threshold.speed_Hz == pytest.approx(20.0, rel=1e-6)
 
 
-def test_text_table_and_colours_call_it_undamped(capsys: pytest.CaptureFixture[str], tmp_path: Any) -> None:
+def test_text_table_and_colours_call_it_undamped(frb: Frb, tmp_path: Any) -> None:
     text = """
 [rotor]
 kind = "jeffcott"
@@ -278,12 +277,10 @@ duration = "10 s"
 """
     path = tmp_path / "undamped.toml"
     path.write_text(text, encoding="utf-8")
-    assert frb(["stability", str(path), "--no-picture"]) == 0
-    told = capsys.readouterr().out
+    told = frb("stability", str(path), "--no-picture").out
     assert "No threshold" in told
     assert "-0.0" not in told
-    assert frb(["stability", str(path), "--no-picture", "--json"]) == 0
-    document = json.loads(capsys.readouterr().out)
+    document = frb("stability", str(path), "--no-picture", "--json").document
     assert document["threshold"] is None
     assert {point["growing_modes"] for point in document["points"]} == {0}
     figure = campbell_figure(stability(frbcli.load_case(path)))

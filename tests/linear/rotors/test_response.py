@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from commands import Frb
 from marches import in_two_bearings
 
 from frbcli.analysis.order_tracking import order_track
 from frbcli.arrays import larger_semi_axis
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
-from frbcli.cli.main import run as frb
 from frbcli.cycles.limit_cycles import limit_cycles
 from frbcli.linear import response as of_response
 from frbcli.linear.response import DOUBTFUL, Response, forced_motion, response
@@ -101,15 +101,12 @@ def test_orbits_are_ellipses_with_the_amplitude_as_larger_semi_axis(jeffcott: Re
 
 
 def test_the_command_writes_table_picture_and_document(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, frb: Frb
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert frb(["runup", "jeffcott", "-o", "run.h5", "--no-picture", "--quiet", "--set", "speed.duration=1 s"]) == 0
-    capsys.readouterr()
-    assert frb(["response", "jeffcott", "--run", "run.h5", "--csv", "t.csv", "--json"]) == 0
-    said = capsys.readouterr()
-    assert frb(["response", "jeffcott", "--run", "run.h5", "--csv", "t.csv"]) == 0
-    text = capsys.readouterr().out
+    frb("runup", "jeffcott", "-o", "run.h5", "--no-picture", "--quiet", "--set", "speed.duration=1 s")
+    said = frb("response", "jeffcott", "--run", "run.h5", "--csv", "t.csv", "--json")
+    text = frb("response", "jeffcott", "--run", "run.h5", "--csv", "t.csv").out
     document = json.loads(said.out)
     assert {"speed_Hz", "node", "amplitude_m", "phase_deg"} <= set(document["points"][0])
     speeds = 120 + len(document["critical_speeds"])
@@ -140,15 +137,13 @@ def test_the_picture_has_the_orbits_at_the_largest_amplitude_and_the_highest_spe
     ("3 g*mm", {"linear"}), ("400 g*mm", {"linear", "doubtful", "beyond-gap"}),
 ])  # fmt: skip
 def test_motions_beyond_the_gap_are_told(
-    unbalance: str, kinds: set[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    unbalance: str, kinds: set[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, frb: Frb
 ) -> None:
     """In table, JSON, CSV and picture, by the eccentricity on the orbit about the resting position."""
     monkeypatch.chdir(tmp_path)
     words = ["response", "jeffcott", "--set", "film.theory=short", "--set", f"rotor.unbalance={unbalance}"]
-    assert frb([*words, "--json", "--csv", "t.csv", "--no-picture"]) == 0
-    said = capsys.readouterr()
-    assert frb([*words, "--csv", "t.csv", "--no-picture"]) == 0
-    text = capsys.readouterr().out
+    said = frb(*words, "--json", "--csv", "t.csv", "--no-picture")
+    text = frb(*words, "--csv", "t.csv", "--no-picture").out
     document = json.loads(said.out)
     assert {point["validity"] for point in document["points"]} == kinds
     largest = max(film["eccentricity_max"] for film in document["films"])

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from commands import Frb
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict
-from frbcli.cli.main import run as frb
 from frbcli.linear.balance_quality import balance_quality, permissible_unbalance
 from frbcli.linear.damped_modes import api_limit, required_margin, vibration_limits, zone_limits
 
@@ -144,24 +144,20 @@ def test_the_margin_grows_with_the_amplification_factor(speed: float, factor: fl
     assert found == (None if asked is None else pytest.approx(asked, abs=1e-12))
 
 
-def test_a_whirl_that_grows_makes_no_machine_acceptable(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_whirl_that_grows_makes_no_machine_acceptable(frb: Frb) -> None:
     words = ["response", "rigid", "--set", "film.theory=short", "--set", "rotor.unbalance=1 g*mm", "--no-picture"]
-    assert frb([*words, "--operating", "200..250 Hz", "--json"]) == 0
-    said = capsys.readouterr()
-    assert frb([*words, "--operating", "200..250 Hz"]) == 0
-    text = capsys.readouterr().out
+    said = frb(*words, "--operating", "200..250 Hz", "--json")
+    text = frb(*words, "--operating", "200..250 Hz").out
     assert json.loads(said.out)["limits"]["whirling_Hz"]
     assert "Not acceptable by this alone" in text
 
 
-def test_the_command_says_what_is_within(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_says_what_is_within(tmp_path: Path, frb: Frb) -> None:
     path = tmp_path / "rotor.toml"
     path.write_text(rigid(1e6, 500.0).source_text, encoding="utf-8")
     words = ["response", str(path), "--no-picture"]
-    assert frb([*words, "--json", "--operating", "9000..12000 rpm", "--grade", "G6.3"]) == 0
-    said = capsys.readouterr()
-    assert frb([*words, "--operating", "9000..12000 rpm", "--grade", "G6.3"]) == 0
-    text = capsys.readouterr().out
+    said = frb(*words, "--json", "--operating", "9000..12000 rpm", "--grade", "G6.3")
+    text = frb(*words, "--operating", "9000..12000 rpm", "--grade", "G6.3").out
     document = json.loads(said.out)
     assert max(map(len, text.splitlines())) <= 80
     limits, grade = document["limits"], document["grade"]
@@ -174,16 +170,13 @@ def test_the_command_says_what_is_within(tmp_path: Path, capsys: pytest.CaptureF
     assert grade["permissible_kg_m"] == pytest.approx(6.3e-3 * 6.0 / (TURN * 200.0))  # at the highest of operation
     assert grade["within"] is False
     assert "exceeds G6.3" in text
-    assert frb(words) == 0
-    assert "ISO" not in capsys.readouterr().out  # nothing of it unless it is asked for
-    assert frb([*words, "--operating", "350..500 Hz"]) == 0
-    assert "350 to 400 Hz alone" in " ".join(capsys.readouterr().out.split())
+    assert "ISO" not in frb(*words).out  # nothing of it unless it is asked for
+    assert "350 to 400 Hz alone" in " ".join(frb(*words, "--operating", "350..500 Hz").out.split())
 
 
 @pytest.mark.parametrize("grade", ["Gx", "0", "-2.5", "G", "G1e9", "nan", "2.5 mm"])
-def test_what_is_no_grade_is_refused(grade: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["response", "jeffcott", "--grade", grade, "--no-picture"]) == 2
-    assert "Write e.g. G6.3" in capsys.readouterr().err
+def test_what_is_no_grade_is_refused(grade: str, frb: Frb) -> None:
+    assert "Write e.g. G6.3" in frb("response", "jeffcott", "--grade", grade, "--no-picture", code=2).err
     with pytest.raises(frbcli.InputError, match=r"Write e\.g\. G6\.3"):
         balance_quality(frbcli.load_case("jeffcott"), grade)
 
