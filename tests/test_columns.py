@@ -12,8 +12,8 @@ import numpy as np
 import pandas as pd
 import pytest
 from commands import Frb
-from helpers.screen import seen
 from pages import column_tables
+from screen import seen
 
 from frbcli.cli.common import Terminal
 from frbcli.columns import ENTRIES, Column, Shown, heads, keys, legend, named, spread_table, table_of
