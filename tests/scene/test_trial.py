@@ -130,7 +130,7 @@ def test_a_run_that_does_not_begin_leaves_the_error_to_its_cells(monkeypatch: py
     def fails(*_: object) -> object:
         raise NotConverged("no")
 
-    monkeypatch.setattr(march, "March", fails)
+    monkeypatch.setattr(tried, "March", fails)
     monkeypatch.setattr(tried, "kept_beside", lambda _: lambda make: make)
     assert tried.tried_error(case, trial) is None
 
