@@ -166,6 +166,7 @@ ON_CELLS = pytest.mark.parametrize(
     "flow", ["film.solution=cells", "contact.flow_factors=true"], ids=["smooth flow", "rough flow"]
 )
 FINER = (216, 30)  # cells around and along, 1.5 times those of static results
+SLOW_Hz = 0.1
 COARSE, FINE = (8, 64), (12, 96)  # along and around, of runs and tests
 
 
@@ -176,11 +177,10 @@ def at(case: Case, speed_Hz: float) -> tuple[FilmState, MixedFriction]:
 
 
 @ON_CELLS
-@pytest.mark.parametrize("speed", [0.1])
-def test_sheets_agree_within_their_errors(flow: str, speed: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    own, friction = at(rigid(flow), speed)
+def test_sheets_agree_within_their_errors(flow: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    own, friction = at(rigid(flow), SLOW_Hz)
     monkeypatch.setattr(static_films, "CELLS", FINER)
-    fine, finer_friction = at(rigid(flow), speed)
+    fine, finer_friction = at(rigid(flow), SLOW_Hz)
     assert 0.05 < friction.share < 0.7
     assert abs(friction.share - finer_friction.share) <= friction.share_error < 0.25 * friction.share
     assert abs(own.power - fine.power) <= own.power_error < 0.25 * own.power
@@ -191,16 +191,15 @@ def test_sheets_agree_within_their_errors(flow: str, speed: float, monkeypatch: 
 
 
 @ON_CELLS
-@pytest.mark.parametrize("speed", [0.1])
-def test_a_run_rests_where_the_sheet_has_it(flow: str, speed: float) -> None:
+def test_a_run_rests_where_the_sheet_has_it(flow: str) -> None:
     """Where its plan and the sheet say so, on the cells of its plan and on more and more."""
-    state, _ = at(rigid(flow), speed)
+    state, _ = at(rigid(flow), SLOW_Hz)
     off = []
     for mesh in ((), *((f"accuracy.mesh=[{along}, {around}]",) for along, around in (COARSE, FINE))):
         case = rigid(flow, *mesh)
         plan = make_plan(case)
         system = make_system(case, plan)
-        (place,) = resting_position(system, 2.0 * math.pi * speed).journals / system.clearances[0]
+        (place,) = resting_position(system, 2.0 * math.pi * SLOW_Hz).journals / system.clearances[0]
         assert abs(np.hypot(*place) - state.eccentricity) <= plan.film_error + state.place_error
         off.append(np.hypot(*(place - state.displacement)))
     assert off[1] > 2.0 * off[2]
