@@ -20,6 +20,7 @@ if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
 if "PYTEST_XDIST_WORKER" in os.environ:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+from commands import Frb
 from round_off import round_off
 
 round_off.install()
@@ -34,7 +35,7 @@ YOUNG = 300_000
 # Files that take longest, first: a worker that began one of them last would be waited for alone. Neighbours begin at
 # the same time: they compile no time loop for the same machine.
 LONGEST = (
-    "test_heat_run", "test_command_line", "test_resumed", "test_port_cycles", "test_given_flow_run", "test_rough_runs",
+    "test_heat_run", "test_command_line", "test_resumed", "test_port_cycles", "test_given_flow", "test_rough_runs",
     "test_oil_cycles", "test_drive", "test_inputs", "test_cosimulation", "test_balance", "test_work_lost",
     "test_streams", "test_pressed_contact", "test_bearing_sheet", "test_compiled", "test_kinked_cycles",
     "test_film_records", "test_coefficients_alone", "test_shot_branch", "test_limit_cycles",
@@ -56,6 +57,12 @@ def perturbed_round_off(request: pytest.FixtureRequest) -> Iterator[None]:
         return
     with round_off.on(request.node.nodeid, seed):
         yield
+
+
+@pytest.fixture
+def frb(capsys: pytest.CaptureFixture[str]) -> Frb:
+    """The command, with what it says: `frb("check", "jeffcott", code=2).err`."""
+    return Frb(capsys)
 
 
 # Folders whose tests draw pictures: each picture is looked at.

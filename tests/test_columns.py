@@ -1,16 +1,23 @@
-"""One declaration of a column makes pandas, CSV, JSON, the terminal's table with its legend, and a page's list."""
+"""One declaration of a column makes pandas, CSV, JSON, the terminal's table with its legend, and a page's list. Tables
+and errors on a screen of 80 columns. Text in a table: no formula to a spreadsheet, no command to a terminal."""
 
 import math
+import re
 from dataclasses import dataclass, replace
 from operator import attrgetter
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import pytest
+from commands import Frb
 from pages import column_tables
+from screen import seen
 
+from frbcli.cli.common import Terminal
 from frbcli.columns import ENTRIES, Column, Shown, heads, keys, legend, named, spread_table, table_of
+from frbcli.results.write import harmless_text, write_table
 from frbcli.units import with_uncertainty
 
 COLUMNS = (
@@ -136,3 +143,57 @@ def test_a_number_has_its_uncertainty_in_its_last_digits(
     value: float | None, uncertainty: float | None, digits: int, told: str
 ) -> None:
     assert with_uncertainty(value, uncertainty, digits) == told
+
+
+WRONG = ("check", "jeffcott", "--set", "foo.bar=2", "--set", "oil.viscosity=abc")
+
+
+def lines(capsys: pytest.CaptureFixture[str]) -> list[str]:
+    return capsys.readouterr().out.splitlines()
+
+
+@pytest.mark.parametrize("before", range(8))
+def test_the_components_of_a_vector_stay_in_one_table(before: int, capsys: pytest.CaptureFixture[str]) -> None:
+    """However many columns are before them; each table begins with the first column."""
+    names = ("film", *(f"column{k}" for k in range(before)), "Mx", "My")
+    cells = [("inner", *["0.123456"] * before, "-0.002567890", "-0.000245678")]
+    Terminal().table("", names, cells, (*(1,) * (before + 1), 2))
+    heads = [line.split() for line in lines(capsys) if line.split()[:1] == ["film"]]
+    assert ["Mx", "My"] in [head[-2:] for head in heads]
+    assert sorted({name for head in heads for name in head}) == sorted(names)
+
+
+def test_a_table_is_its_title_its_heads_a_line_and_its_rows(capsys: pytest.CaptureFixture[str]) -> None:
+    """Heads that are broken stand on the line; all rows are as wide as the table. In a pipe nothing is bold."""
+    long = "stiffness " * 9
+    Terminal().table("K", ("a", "", long.strip()), [("1\n2", "x" * 4, "y")])
+    title, above, first, second, line, row, below, last = lines(capsys)
+    assert {len(each) for each in (title, above, first, second, line, row, below, last)} == {len(line)}
+    assert (title.strip(), above.strip(), last.strip()) == ("K", "", "")
+    assert first.split() + second.split() == [*["stiffness"] * 6, "a", *["stiffness"] * 3]
+    assert line.strip() == "─" * (len(line) - 2)
+    assert (row.split(), below.split()) == (["1", "xxxx", "y"], ["2"])
+
+
+def test_errors_fit_the_screen_without_a_word_cut(frb: Frb) -> None:
+    """In a pipe a fault is one line, which programs can read; on a terminal all of the same words are there."""
+    piped = frb(*WRONG, code=2).err
+    shown = seen(WRONG, environment={"COLUMNS": "80"})
+    assert shown.code == 2
+    assert max(map(len, piped.splitlines())) > 80 >= max(map(len, shown.text.splitlines()))
+    assert shown.text.split() == piped.split()
+
+
+HARMFUL = ["=cmd|' /C calc'!A0", "@SUM(1)", "+1+cmd|x", "-2+3", " =1", "=1"]
+HARMLESS = ["1 g*mm", "-5 N", "+1.5e3 N*s/m", "-3.5 um", "--", "a=b", "", "-1", "[1, 2]"]
+
+
+def test_a_table_is_not_computed_by_a_spreadsheet_nor_obeyed_by_a_terminal(tmp_path: Path) -> None:
+    assert [harmless_text(text) for text in HARMFUL] == [f"'{text}" for text in HARMFUL]
+    assert [harmless_text(text) for text in HARMLESS if text != "--"] == [text for text in HARMLESS if text != "--"]
+    assert harmless_text("\x1b[2Jx\x07") == "?[2Jx?"
+    table = pd.DataFrame({"=film": [1.5, -2.0], "film": ["=1", "\x1b]0;x\x07"], "none": [None, np.nan]})
+    table = table[["film", "=film", "none"]]
+    write_table(table, tmp_path / "a.csv")
+    text = re.sub(r"0{25}\d{10}(?=,\n$)", "", (tmp_path / "a.csv").read_text())  # without the checksum
+    assert text == "film,'=film,none\n'=1,1.5,\n?]0;x?,-2.0,\n"

@@ -18,7 +18,6 @@ from frbcli.errors import FrbError
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
-    from frbcli.cli.common import Terminal
     from frbcli.results.store import Run
     from frbcli.runs.march import Progress
     from frbcli.runs.run import Observer

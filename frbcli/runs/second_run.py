@@ -19,7 +19,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -38,17 +38,13 @@ from frbcli.runs.march import March, Progress
 from frbcli.scene.cost import clock
 from frbcli.scene.course import ERROR_ORDERS
 from frbcli.scene.films import film_places
-from frbcli.scene.machine.system import System
+from frbcli.scene.machine.system import System, make_segments
 from frbcli.scene.machine.turbocharger import shaft_of
 from frbcli.scene.planning.cell_choice import worst_film
 from frbcli.scene.planning.plan import LOOSER, Trial, coarser_plan
 from frbcli.scene.tilted import FRONT_ORDER, cells_of
 from frbcli.solve.state import CONTACT, FINISHED, RUNNING, STANDSTILL
 from frbcli.units import HERTZ, SpeedUnit
-
-if TYPE_CHECKING:
-    from frbcli.runs.march import March
-
 
 Observer = Callable[[Progress], None]
 
@@ -390,10 +386,6 @@ def tried_error(case: Case, trial: Trial) -> TriedError | None:
 
 def _difference(case: Case, trial: Trial) -> float:
     """Largest difference of the eccentricities of both runs; NaN if one of them does not reach the end."""
-    from frbcli.runs.error_budget import FewerCells  # a difference that is kept on disk needs no time loop
-    from frbcli.runs.march import March
-    from frbcli.scene.machine.system import make_segments
-
     try:
         own = March(case, trial.plan, make_segments(case, trial.plan), trial.profile)
         finer = own.again(trial.finer)
@@ -407,8 +399,6 @@ def _difference(case: Case, trial: Trial) -> float:
 
 def _marched(march: March) -> bool:
     """Whether a run reaches its end."""
-    from frbcli.solve.state import FINISHED, RUNNING, STANDSTILL
-
     status = RUNNING
     while status == RUNNING:
         status, _ = march.chunk()

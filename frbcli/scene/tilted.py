@@ -61,7 +61,6 @@ from frbcli.scene.planning.cell_choice import (
 )
 
 if TYPE_CHECKING:
-    from frbcli.case.schema import Case
     from frbcli.scene.planning.film_choice import FilmChoice, Plan
 
 

@@ -22,7 +22,7 @@ from importlib.util import find_spec
 from multiprocessing import resource_tracker
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import joblib
 
@@ -37,10 +37,6 @@ from frbcli.results.write import SWEEP_LOG, Unreadable, text_of, write
 from frbcli.runs.interruption import deaf
 from frbcli.runs.run import runup
 from frbcli.studies.sweep_points import refused
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
 
 METHODS = ("runup", "stability")
 FINISHED, INTERRUPTED = "finished", "interrupted"

@@ -1,7 +1,6 @@
 """Unbalances that were put in are found: by the linear response of the case of a run, and by trial runs."""
 
 import cmath
-import json
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -10,11 +9,11 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from commands import Frb
 
 import frbcli
 from frbcli.balancing import Balancing
 from frbcli.case.reading.load import case_from_dict
-from frbcli.cli.main import run as frb
 from frbcli.results.store import Run
 
 COEFFICIENTS: list[dict[str, Any]] = [
@@ -188,9 +187,8 @@ PULSES = ["--tacho", "key"]
 Y = ["--y", "y1,y2"]
 
 
-def balanced(words: list[str], capsys: pytest.CaptureFixture[str], code: int = 0) -> dict[str, Any]:
-    assert frb([*words, "--json"]) == code
-    document: dict[str, Any] = json.loads(capsys.readouterr().out)
+def balanced(words: list[str], frb: Frb, code: int = 0) -> dict[str, Any]:
+    document: dict[str, Any] = frb(*words, "--json", code=code).document
     return document
 
 
@@ -199,9 +197,9 @@ def corrections(document: dict[str, Any]) -> dict[str, complex]:
 
 
 @pytest.mark.parametrize("more", [[*PULSES, *Y], PULSES], ids=["x and y", "x alone"])
-def test_trial_runs_find_the_unbalance(more: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_trial_runs_find_the_unbalance(more: list[str], tmp_path: Path, frb: Frb) -> None:
     """The recordings begin at different angles of the rotor; the correction is opposite to the unbalance."""
-    document = balanced([*recordings(tmp_path), *more], capsys)
+    document = balanced([*recordings(tmp_path), *more], frb)
     for plane, correction in corrections(document).items():
         assert abs(correction + GIVEN[plane]) < 1e-2 * abs(GIVEN[plane])
     assert set(document) >= {"command", "run", "planes", "residual", "condition", "speeds_Hz"}
@@ -213,20 +211,20 @@ def test_trial_runs_find_the_unbalance(more: list[str], tmp_path: Path, capsys: 
     assert document["status"] == "good"
 
 
-def test_noise_is_in_the_uncertainty(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    document = balanced([*recordings(tmp_path, noise=10.0), *PULSES, *Y], capsys)
+def test_noise_is_in_the_uncertainty(tmp_path: Path, frb: Frb) -> None:
+    document = balanced([*recordings(tmp_path, noise=10.0), *PULSES, *Y], frb)
     for row in document["planes"]:
         off = abs(corrections(document)[row["plane"]] + GIVEN[row["plane"]])
         assert off < 4e6 * row["correction_uncertainty_kg_m"]
 
 
-def test_recordings_without_pulses_have_to_be_triggered(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_recordings_without_pulses_have_to_be_triggered(tmp_path: Path, frb: Frb) -> None:
     words = [*recordings(tmp_path), *Y, "--speed-at", "50 Hz"]
-    document = balanced(words, capsys, 2)
+    document = balanced(words, frb, 2)
     assert "--triggered" in document["faults"][0]["remedy"]
     for name, unbalance in (("run", GIVEN), *((f"trial_{p}", GIVEN | {p: GIVEN[p] + TRIAL[p]}) for p in "ab")):
         recorded(tmp_path / f"{name}.csv", unbalance, 0.0)
-    document = balanced([*words, "--triggered"], capsys)
+    document = balanced([*words, "--triggered"], frb)
     for plane, correction in corrections(document).items():
         assert abs(correction + GIVEN[plane]) < 1e-2 * abs(GIVEN[plane])
 
@@ -236,26 +234,25 @@ def alike(share: float) -> np.ndarray:
     return np.stack([INFLUENCE[:, 0], INFLUENCE[:, 0] + share * INFLUENCE[:, 1]], axis=1)
 
 
-def test_planes_that_are_alike_are_doubtful_or_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_planes_that_are_alike_are_doubtful_or_refused(tmp_path: Path, frb: Frb) -> None:
     words = recordings(tmp_path, alike(0.02))
-    document = balanced([*words, *PULSES, *Y], capsys)
+    document = balanced([*words, *PULSES, *Y], frb)
     assert document["status"] == "doubtful"
     assert document["condition"] > 50.0
     assert any("hard to separate" in doubt for doubt in document["doubts"])
-    assert frb([*words, *PULSES, *Y]) == 0
-    said = capsys.readouterr().out
+    said = frb(*words, *PULSES, *Y).out
     assert "Doubtful:" in said
     assert "doubtful corrections" in said
     assert max(map(len, said.splitlines())) <= 80
-    document = balanced([*recordings(tmp_path, alike(0.0)), *PULSES, *Y], capsys, 3)
+    document = balanced([*recordings(tmp_path, alike(0.0)), *PULSES, *Y], frb, 3)
     assert "cannot be separated" in document["message"]
 
 
-def test_a_feeble_trial_is_doubtful(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_feeble_trial_is_doubtful(tmp_path: Path, frb: Frb) -> None:
     words = recordings(tmp_path)
     file = recorded(tmp_path / "trial_b.csv", GIVEN | {"b": GIVEN["b"] + 0.01 * TRIAL["b"]}, 0.2)
     words[words.index("--time") - 3] = f"b={file}:{0.01 * abs(TRIAL['b'])} g*mm@250 deg"
-    document = balanced([*words, *PULSES, *Y], capsys)
+    document = balanced([*words, *PULSES, *Y], frb)
     assert document["status"] == "doubtful"
     assert any("take more" in doubt for doubt in document["doubts"])
 
@@ -267,19 +264,15 @@ def test_a_feeble_trial_is_doubtful(tmp_path: Path, capsys: pytest.CaptureFixtur
     (["--trial", "a=trial.csv:5 g@30 deg"], "kg*m"), (["--trial", "a=trial.csv:0 g*mm@30 deg"], "no unbalance above 0"),
     (["--trial", "a=trial.csv:5 g*mm@30 mm"], "does not fit"),
 ])  # fmt: skip
-def test_what_cannot_be_balanced_is_refused(
-    words: list[str], problem: str, linear: Run, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert frb(["balance", str(linear.path), *words]) == 2
-    assert problem in capsys.readouterr().err
+def test_what_cannot_be_balanced_is_refused(words: list[str], problem: str, linear: Run, frb: Frb) -> None:
+    assert problem in frb("balance", str(linear.path), *words, code=2).err
 
 
-def test_measurements_that_say_too_little_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_measurements_that_say_too_little_are_refused(tmp_path: Path, frb: Frb) -> None:
     words = [*recordings(tmp_path), *PULSES]
     few = [word.replace("x1,x2", "x1") for word in words]
-    assert "more than the 1 vectors" in balanced(few, capsys, 2)["faults"][0]["problem"]
-    assert "has no trial run" in balanced([*words, "--planes", "a,c"], capsys, 2)["faults"][0]["problem"]
+    assert "more than the 1 vectors" in balanced(few, frb, 2)["faults"][0]["problem"]
+    assert "has no trial run" in balanced([*words, "--planes", "a,c"], frb, 2)["faults"][0]["problem"]
     alone = ["balance", str(tmp_path / "run.csv"), "--planes", "a", *words[-6:]]
-    assert "carries no case" in balanced(alone, capsys, 2)["faults"][0]["problem"]
-    assert frb([*words, "--y", "y1"]) == 2
-    assert "2 columns" in capsys.readouterr().err
+    assert "carries no case" in balanced(alone, frb, 2)["faults"][0]["problem"]
+    assert "2 columns" in frb(*words, "--y", "y1", code=2).err

@@ -1,19 +1,34 @@
-"""The case file: what is read, and what is said about what cannot be read."""
+"""Case files: what is read of them, also rings, supplies, and rotor speeds through points."""
 
 import json
 import math
 import re
+from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 from case_texts import SMALL, TURBOCHARGER, faults_of
 
+import frbcli
+from frbcli import make_plan
+from frbcli.analysis.measured import Measurement, measured_run
+from frbcli.analysis.order_tracking import order_track
 from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
 from frbcli.case.reading.listing import values
-from frbcli.case.reading.load import load_case, load_case_text
+from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
 from frbcli.case.reading.shipped import shipped_cases, shipped_names
 from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
 from frbcli.case.schema import Case, json_schema
+from frbcli.case.supplies import SUPPLIES, OilSupply, Outline, kind_of
 from frbcli.errors import InputError
+from frbcli.runs.run import rundown, runup
+from frbcli.scene.course import default_speeds
+from frbcli.scene.films import film_places, film_section, is_plain
+from frbcli.scene.machine.rotor import make_rotor
+from frbcli.scene.planning.cell_choice import run_up_profile
+from frbcli.studies.accuracy import accuracy
+from frbcli.studies.warm_up import moment_of_run
 
 
 def test_small_case_in_si_with_its_defaults() -> None:
@@ -216,3 +231,196 @@ def test_a_table_that_says_that_there_is_no_heat_needs_no_more() -> None:
     assert warm.heat is not None
     with pytest.raises(InputError, match="supply_temperature: is missing"):
         load_case("jeffcott", ["thermal={model='none', mixing=0.6}"])
+
+
+BRASS = 8860.0  # kg/m^3
+
+
+def without(*keys: str) -> Case:
+    case = load_case("floating-ring")
+    return case.with_settings({f"bearing.ring.{key}": None for key in keys}, {"bearing.ring.material": "brass"})
+
+
+def ring_of(case: Case) -> FloatingRingBearing:
+    (bearing,) = case.bearings
+    assert isinstance(bearing, FloatingRingBearing)
+    return bearing
+
+
+def test_a_hollow_cylinder_has_its_mass_and_inertia() -> None:
+    """By the sum over thin shells of mass 2 pi rho B r dr, and r^2 times it."""
+    bearing = ring_of(without("mass", "inertia"))
+    inner, outer, width = 0.5 * bearing.inner.diameter, 0.5 * bearing.outer.diameter, bearing.inner.width
+    edges = np.linspace(inner, outer, 20_001)
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    shells = 2.0 * math.pi * BRASS * width * middle * np.diff(edges)
+    assert bearing.ring_mass == pytest.approx(shells.sum(), rel=1e-9)
+    assert bearing.ring_inertia == pytest.approx((shells * middle**2).sum(), rel=1e-8)
+    wide = ring_of(without("mass", "inertia").with_settings({"bearing.ring.width": 2.0 * width}))
+    assert wide.ring_mass == pytest.approx(2.0 * bearing.ring_mass)
+
+
+def test_what_is_given_is_kept_and_what_follows_is_said() -> None:
+    given = ring_of(load_case("floating-ring"))
+    assert (given.ring_mass, given.ring_inertia) == (given.ring.given_mass, given.ring.given_inertia)
+    half = without("inertia")
+    bearing = ring_of(half)
+    squares = bearing.inner.diameter**2 + bearing.outer.diameter**2
+    assert bearing.ring_inertia == pytest.approx(given.ring_mass * squares / 8.0)
+    (said,) = (one for one in make_plan(half).decisions if one.choice == "ring")
+    assert said.value == f"inertia {1e6 * bearing.ring_inertia:.4g} kg*mm^2"
+    (said,) = (one for one in make_plan(without("mass", "inertia")).decisions if one.choice == "ring")
+    assert said.value.startswith("mass ")
+    assert "a cylinder of brass" in said.reason
+    assert [one for one in make_plan(load_case("floating-ring")).decisions if one.choice == "ring"] == []
+
+
+def test_the_machine_has_the_mass_of_the_ring() -> None:
+    case = without("mass")
+    heavier = np.trace(make_rotor(case).mass) - np.trace(make_rotor(load_case("floating-ring")).mass)
+    more = ring_of(case).ring_mass - ring_of(load_case("floating-ring")).ring_mass
+    assert heavier == pytest.approx(4.0 * more, rel=1e-9)  # two rings, each in x and y
+
+
+def test_a_ring_needs_a_mass_or_a_material() -> None:
+    with pytest.raises(InputError, match=r'bearing.ring.mass: is missing. Add e.g. mass = "30 g", or material'):
+        load_case("floating-ring").with_settings({"bearing.ring.mass": None})
+    with pytest.raises(InputError, match=r'bearing.ring.width = "10 mm": has no effect'):
+        load_case("floating-ring").with_settings({"bearing.ring.width": "10 mm"})
+
+
+AMBIENT = 1e5
+each_supply = pytest.mark.parametrize("row", SUPPLIES, ids=kind_of)
+
+
+def film_of(row: type[OilSupply]) -> tuple[frbcli.Case, SingleFilmBearing]:
+    """A bearing with this supply at 3.5 bar, and its case."""
+    entry = json_schema()["$defs"][row.__name__]
+    given = {key: _example(entry["properties"][key]) for key in entry.get("required", ()) if key != "kind"}
+    given = {"kind": kind_of(row), **given, **({"pressure": "3.5 bar"} if row.feeds else {})}
+    table = ", ".join(f"{key} = {value if isinstance(value, int) else repr(value)}" for key, value in given.items())
+    case = load_case("jeffcott", ["bearing.diameter=60 mm", f"bearing.supply={{ {table} }}"])  # with room for all
+    (film,) = (place.geometry for place in film_places(case))
+    assert isinstance(film, SingleFilmBearing)
+    return case, film
+
+
+def _example(entry: dict[str, Any]) -> object:
+    return entry["examples"][0] if "examples" in entry else entry["anyOf"][1]["examples"][0]
+
+
+@each_supply
+def test_all_openings_have_the_gauge_pressure_of_the_supply(row: type[OilSupply]) -> None:
+    case, film = film_of(row)
+    section = film_section(case, film)
+    pressures = [*(groove.pressure for groove in section.grooves), *(hole.pressure for hole in section.holes)]
+    if section.far == "groove":
+        pressures.append(section.far_pressure)
+    assert len(pressures) == (len(film.supply.outlines(section.radius, film.width)) if row.feeds else 0)
+    assert set(pressures) <= {film.supply.gauge(AMBIENT)}
+    assert film.supply.gauge(AMBIENT) == (2.5e5 if row.feeds else 0.0)
+    assert film.supply.absolute(AMBIENT) == (3.5e5 if row.feeds else AMBIENT)
+
+
+@each_supply
+def test_what_a_supply_says_of_the_gap_is_what_its_section_has(row: type[OilSupply]) -> None:
+    case, film = film_of(row)
+    section = film_section(case, film)
+    assert is_plain(film) is not bool(section.grooves or section.holes)
+    assert film.supply.divides is bool(section.grooves)
+    assert film.supply.rectangular is not bool(section.holes)
+    assert film.supply.splits is (section.far == "groove" and section.copies == 2)
+
+
+@pytest.mark.parametrize(("places", "copies"), [((10e-3,), 2), ((6e-3,), 1), ((6e-3, 14e-3), 1)])
+def test_half_of_the_width_is_solved_where_all_openings_lie_in_its_middle(
+    places: tuple[float, ...], copies: int
+) -> None:
+    class Rows(OilSupply):
+        kind: str = "rows"
+
+        def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
+            return tuple(Outline(0.0, axial, 1e-3 / radius, 0.05 * width) for axial in places)
+
+    found = Rows().openings(12.5e-3, 20e-3, "free-to-air", AMBIENT)
+    assert (found.copies, found.far) == (copies, "symmetry" if copies == 2 else "free-to-air")
+    assert tuple(hole.axial for hole in found.holes) == places
+
+
+MACHINE = {
+    "rotor": {"kind": "rigid", "mass": "6 kg", "gravity": 0.0, "unbalance": "3 g*mm"},
+    "bearing": {"kind": "coefficients", "stiffness": "1e6 N/m", "damping": "300 N*s/m"},
+}
+POINTS = [["0 s", "0 Hz"], ["0.1 s", "1800 rpm"], ["0.2 s", "30 Hz"], ["300 ms", "10 Hz"]]
+
+
+def machine(folder: Path | str = ".", **speed: object) -> frbcli.Case:
+    return case_from_dict(MACHINE | {"speed": speed}, "points", folder=folder)
+
+
+def test_the_speed_goes_through_its_points() -> None:
+    """Range and duration follow; the angle is the area under the lines."""
+    case = machine(points=POINTS)
+    assert (case.speed.start, case.speed.end, case.speed.duration) == (0.0, 30.0, 0.3)
+    profile = run_up_profile(case)
+    between = profile.speed(np.array([0.05, 0.15, 0.25])) / (2.0 * math.pi)
+    np.testing.assert_allclose(between, [15.0, 30.0, 20.0])
+    assert profile.angles[-1] == pytest.approx(2.0 * math.pi * (1.5 + 3.0 + 2.0), rel=1e-12)
+    assert load_case_text(case.source_text, name="points") == case
+    assert not [value.key for value in values(case) if value.bare and value.key.startswith("speed")]
+    assert case.with_settings("rotor.unbalance=1 g*mm").speed == case.speed
+    assert default_speeds(case)[-1] == 30.0
+    moment = moment_of_run(case)
+    assert moment.speed.times == ()
+    assert moment.speed.start == moment.speed.end == 30.0
+
+
+def test_a_ramp_as_two_points_is_the_ramp(tmp_path: Path) -> None:
+    ramp = runup(machine(**{"from": "5 Hz", "to": "25 Hz", "duration": "0.2 s"}), tmp_path / "ramp.h5")
+    points = runup(machine(points=[["0 s", "5 Hz"], ["0.2 s", "25 Hz"]]), tmp_path / "points.h5")
+    for name in ramp.signals:
+        np.testing.assert_array_equal(points[name], ramp[name], strict=True)
+
+
+def test_orders_of_a_run_lie_on_those_of_the_measurement_with_the_tacho(tmp_path: Path) -> None:
+    """A machine that speeds up, slows down and speeds up again, measured with four pulses in a revolution: the computed
+    synchronous motion follows the same speeds, and its line in spectra is the measured one."""
+    time = np.arange(0.0, 2.0, 1e-4)
+    speed = 40.0 + 2.0 * np.sin(3.0 * time) + time
+    angle = 2.0 * math.pi * np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * 1e-4)])
+    tacho = (np.sin(4.0 * angle) > 0.9).astype(float)
+    columns = np.column_stack([time, 1e-5 * np.cos(angle), 1e-5 * np.sin(angle), tacho])
+    np.savetxt(tmp_path / "measured.csv", columns, delimiter=",", header="t,x,y,tacho", comments="", fmt="%.9g")
+    case = machine(tmp_path, file="measured.csv", tacho="tacho", pulses=4)
+    assert len(case.speed.times) < 2.2 * angle[-1] / (2.0 * math.pi)  # a point for each revolution
+    run = runup(case, tmp_path / "run.h5")
+    assert run.t_end_s == pytest.approx(time[-1])
+    inside = (run["time_s"] > 0.2) & (run["time_s"] < 1.8)
+    there = np.interp(run["time_s"][inside], time, speed)
+    # The speed of a tacho is the mean over T = 8 revolutions, 0.2 s: it is off by T^2 / 24 of the second derivative,
+    # 0.03 Hz, and by a sample of 0.1 ms in T, 0.02 Hz.
+    np.testing.assert_allclose(run["speed_Hz"][inside], there, rtol=0.0, atol=0.05)
+    given = Measurement("x", clearance=35e-6, y="y", time="t", tacho="tacho", pulses=4, unit_m=1.0)
+    measured = measured_run(tmp_path / "measured.csv", given)
+    mine, other = (order_track(each, 1.0, "journal") for each in (run, measured))
+    both = np.interp(mine.time_s, other.time_s, other.speed_Hz)
+    within = (mine.time_s > 0.3) & (mine.time_s < 1.7)
+    # Both begin and end of T are known to a sample: by 0.04 Hz the speed jitters from pulse to pulse.
+    np.testing.assert_allclose(mine.speed_Hz[within], both[within], rtol=0.0, atol=0.05)
+
+
+def test_a_file_of_speeds_has_units(tmp_path: Path) -> None:
+    np.savetxt(tmp_path / "speed.csv", [[0.0, 0.0], [100.0, 1800.0], [300.0, 600.0]], delimiter=",",
+               header="time [ms],speed [rpm]", comments="")  # fmt: skip
+    case = machine(tmp_path, file="speed.csv")
+    np.testing.assert_allclose(case.speed.times, (0.0, 0.1, 0.3))
+    np.testing.assert_allclose(case.speed.speeds, (0.0, 30.0, 10.0))
+
+
+def test_what_needs_a_ramp_refuses_points(tmp_path: Path) -> None:
+    case = machine(points=POINTS)
+    with pytest.raises(InputError, match="how the speed goes down"):
+        rundown(case, tmp_path / "run.h5")
+    film = frbcli.load_case("jeffcott").with_settings({"speed": {"points": POINTS}})
+    with pytest.raises(InputError, match="are no ramp"):
+        accuracy(film, until=0.2)

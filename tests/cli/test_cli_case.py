@@ -7,10 +7,10 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 import click
 import pytest
+from commands import Frb
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.reading.shipped import find_shipped
@@ -33,30 +33,23 @@ def _planned(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(plan, "make_plan", make)
 
 
-def document(capsys: pytest.CaptureFixture[str]) -> Any:
-    """The one JSON document on stdout."""
-    return json.loads(capsys.readouterr().out)
-
-
 @pytest.mark.parametrize("name", COMMANDS)
-def test_every_command_of_the_table_has_help(name: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run([name, "--help"]) == 0
-    shown = capsys.readouterr().out
+def test_every_command_of_the_table_has_help(name: str, frb: Frb) -> None:
+    shown = frb(name, "--help").out
     assert f"frb {name}" in shown
     assert "--json" in shown
     assert max(map(len, shown.splitlines())) <= 80
 
 
-def test_check_refuses_a_table_that_ends_before_the_run(capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_refuses_a_table_that_ends_before_the_run(frb: Frb) -> None:
     table = 'bearing.supply.pressure=[["0 s", "1 bar"], ["2 s", "3 bar"]]'
-    assert run(["check", "jeffcott", "--set", "film.theory=short", "--set", table]) == 2
-    assert "ends at 2 s, and the run ends at 10 s" in " ".join(capsys.readouterr().err.split())
+    said = frb("check", "jeffcott", "--set", "film.theory=short", "--set", table, code=2)
+    assert "ends at 2 s, and the run ends at 10 s" in " ".join(said.err.split())
 
 
 @pytest.mark.usefixtures("_planned")
-def test_check_as_json(capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["check", "jeffcott", "--json", "--quiet"]) == 0
-    captured = capsys.readouterr()
+def test_check_as_json(frb: Frb) -> None:
+    captured = frb("check", "jeffcott", "--json", "--quiet")
     assert captured.err == ""
     found = json.loads(captured.out)
     assert (found["command"], found["case"], found["status"]) == ("check", "jeffcott", "ok")
@@ -68,16 +61,14 @@ def test_check_as_json(capsys: pytest.CaptureFixture[str]) -> None:
     assert 0.05 < found["expected"]["cpu_s"] < 5.0
 
 
-def test_wrong_case_is_exit_code_2_with_every_fault(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_wrong_case_is_exit_code_2_with_every_fault(tmp_path: Path, frb: Frb) -> None:
     file = tmp_path / "wrong.toml"
     file.write_text(find_shipped("jeffcott").replace("6 kg", "6 mm").replace("35 um", "35 kg"))
-    assert run(["check", str(file), "--set", "speed.too=3"]) == 2
-    captured = capsys.readouterr()
+    captured = frb("check", str(file), "--set", "speed.too=3", code=2)
     assert captured.out == ""
     for key in ("rotor.mass", "bearing.clearance", "speed.too"):
         assert key in captured.err
-    assert run(["check", "--json", str(file)]) == 2
-    found = document(capsys)
+    found = frb("check", "--json", str(file), code=2).document
     assert (found["command"], found["status"]) == ("check", "input-error")
     assert [fault["key"] for fault in found["faults"]] == ["rotor.mass", "bearing.clearance"]
     assert all(set(fault) == {"key", "value", "line", "problem", "remedy"} for fault in found["faults"])
@@ -88,11 +79,9 @@ def test_wrong_case_is_exit_code_2_with_every_fault(tmp_path: Path, capsys: pyte
 @pytest.mark.parametrize(
     "arguments", [["nonsense"], ["check"], ["check", "jeffcott", "--no-such-option"], ["cases", "-o", "x"]]
 )
-def test_wrong_usage_is_exit_code_2(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(arguments) == 2
-    assert capsys.readouterr().out == ""
-    assert run([*arguments, "--json"]) == 2
-    found = document(capsys)
+def test_wrong_usage_is_exit_code_2(arguments: list[str], frb: Frb) -> None:
+    assert frb(*arguments, code=2).out == ""
+    found = frb(*arguments, "--json", code=2).document
     assert found["status"] == "input-error"
     assert "--help" in found["faults"][0]["remedy"]
 
@@ -119,14 +108,13 @@ def test_errors_become_exit_codes(
     code: int,
     status: str | None,
     monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    frb: Frb,
 ) -> None:
     module = ModuleType("raising")
     module.command = _raising(error)  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "raising", module)
     monkeypatch.setitem(cli.COMMANDS, "check", ("raising", "Raises.", "frb check"))
-    assert run(["check", "--json"]) == code
-    captured = capsys.readouterr()
+    captured = frb("check", "--json", code=code)
     if status is None:
         assert captured.out == ""
     else:
@@ -151,22 +139,18 @@ def test_console_entry_points() -> None:
     assert "Traceback" not in wrong.stderr
 
 
-def test_case_is_printed_and_copied(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["cases", "jeffcott"]) == 0
-    assert capsys.readouterr().out == find_shipped("jeffcott")
+def test_case_is_printed_and_copied(tmp_path: Path, frb: Frb) -> None:
+    assert frb("cases", "jeffcott").out == find_shipped("jeffcott")
     copy = tmp_path / "mine.toml"
-    assert run(["cases", "jeffcott", "-o", str(copy)]) == 0
+    frb("cases", "jeffcott", "-o", str(copy))
     assert load_case(copy).rotor == load_case("jeffcott").rotor
-    assert run(["cases", "jeffcott", "-o", str(copy)]) == 2  # what is there stays
-    assert run(["cases", "jeffcott", "-o", str(tmp_path / "no" / "mine.toml")]) == 2
-    assert run(["cases", "jefcott"]) == 2
-    assert 'Did you mean the shipped case "jeffcott"' in capsys.readouterr().err
-    assert run(["cases", "jeffcott", "--set", "bearing.clearance=40 um", "-o", str(tmp_path / "wide.toml")]) == 0
+    frb("cases", "jeffcott", "-o", str(copy), code=2)  # what is there stays
+    frb("cases", "jeffcott", "-o", str(tmp_path / "no" / "mine.toml"), code=2)
+    assert 'Did you mean the shipped case "jeffcott"' in frb("cases", "jefcott", code=2).err
+    frb("cases", "jeffcott", "--set", "bearing.clearance=40 um", "-o", str(tmp_path / "wide.toml"))
     assert load_case(tmp_path / "wide.toml").same_run(load_case("jeffcott", ["bearing.clearance=40 um"]))
-    assert run(["cases", "--set", "bearing.clearance=40 um"]) == 2
-    capsys.readouterr()
-    assert run(["waterfall", "run.h5", "--set", "bearing.clearance=40 um"]) == 2
-    assert "before it is computed" in capsys.readouterr().err
+    frb("cases", "--set", "bearing.clearance=40 um", code=2)
+    assert "before it is computed" in frb("waterfall", "run.h5", "--set", "bearing.clearance=40 um", code=2).err
 
 
 def test_json_knows_no_nan(capsys: pytest.CaptureFixture[str]) -> None:
@@ -182,7 +166,8 @@ def test_json_knows_no_nan(capsys: pytest.CaptureFixture[str]) -> None:
             "f": (True, None),
         }
     )
-    assert document(capsys) == {"a": None, "b": [[1.0, None]], "c": 2.0, "d": 3, "e": "x", "f": [True, None]}
+    told = json.loads(capsys.readouterr().out)
+    assert told == {"a": None, "b": [[1.0, None]], "c": 2.0, "d": 3, "e": "x", "f": [True, None]}
 
 
 @pytest.mark.parametrize("terminal", [Terminal(json, quiet) for json in (False, True) for quiet in (False, True)])

@@ -1,6 +1,7 @@
-"""`frb runup` and `frb rundown`: exit codes, the JSON document, progress, Ctrl-C, SIGKILL."""
+"""`frb runup`, `frb rundown`, `frb rotation`, `frb squeeze`, `frb whirl`: JSON keys, files, pictures, exit codes."""
 
 import json
+import math
 import os
 import pty
 import random
@@ -14,12 +15,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from commands import Frb
 from hypothesis import given
 from hypothesis import strategies as st
 from paths import ROOT
 from resumed import assert_same
 
-from frbcli.cli.main import run as frb
+from frbcli.cli.main import run
 from frbcli.cli.progress import progress_line
 from frbcli.results.store import Run, read_run
 from frbcli.runs.march import Progress
@@ -59,9 +61,8 @@ def document(text: str) -> dict[str, Any]:
 # --- what is said where ---
 
 
-def test_runup_says_one_json_document_and_leaves_a_picture(capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["runup", *QUICK, "--set", "speed.to=250 Hz", "--json"]) == 0
-    said = capsys.readouterr()
+def test_runup_says_one_json_document_and_leaves_a_picture(frb: Frb) -> None:
+    said = frb("runup", *QUICK, "--set", "speed.to=250 Hz", "--json")
     found = document(said.out)
     assert (found["command"], found["run"]) == ("runup", "jeffcott.h5")
     assert (found["status"], found["t_end_s"]) == ("finished", 0.3)
@@ -71,15 +72,13 @@ def test_runup_says_one_json_document_and_leaves_a_picture(capsys: pytest.Captur
     assert Path("jeffcott-summary.png").read_bytes().startswith(PNG)
 
 
-def test_quiet_says_nothing(capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["runup", *QUICK, "-o", "a.h5", "--quiet", "--no-picture"]) == 0
-    assert capsys.readouterr() == ("", "")
+def test_quiet_says_nothing(frb: Frb) -> None:
+    assert frb("runup", *QUICK, "-o", "a.h5", "--quiet", "--no-picture") == ("", "")
     assert os.listdir() == ["a.h5"]
 
 
-def test_quiet_json_says_json_alone(capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["rundown", *QUICK, "--json", "--quiet", "--no-picture"]) == 0
-    said = capsys.readouterr()
+def test_quiet_json_says_json_alone(frb: Frb) -> None:
+    said = frb("rundown", *QUICK, "--json", "--quiet", "--no-picture")
     assert document(said.out)["command"] == "rundown"
     assert said.err == ""
 
@@ -149,9 +148,8 @@ def test_progress_moves_on_a_terminal() -> None:
     assert max(map(len, told.splitlines())) <= 80
 
 
-def test_no_progress_where_nobody_watches(capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["runup", *QUICK, "--no-picture"]) == 0
-    assert "steps/rev" not in capsys.readouterr().err
+def test_no_progress_where_nobody_watches(frb: Frb) -> None:
+    assert "steps/rev" not in frb("runup", *QUICK, "--no-picture").err
 
 
 # --- broken off ---
@@ -169,11 +167,11 @@ def wait_for(path: Path, process: subprocess.Popen[bytes]) -> None:
 @pytest.fixture(scope="module")
 def whole_run(tmp_path_factory: pytest.TempPathFactory) -> Run:
     path = tmp_path_factory.mktemp("whole") / "whole.h5"
-    assert frb(["runup", *LONG, "-o", str(path), "--quiet", "--no-picture"]) == 0
+    assert run(["runup", *LONG, "-o", str(path), "--quiet", "--no-picture"]) == 0
     return read_run(path)
 
 
-def test_ctrl_c_keeps_the_run_and_resume_finishes_it(whole_run: Run) -> None:
+def test_ctrl_c_keeps_the_run_and_resume_finishes_it(whole_run: Run, frb: Frb) -> None:
     path = Path("a.h5")
     words = ("runup", *LONG, "-o", str(path), "--json")
     with frb_process(*words, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
@@ -188,11 +186,11 @@ def test_ctrl_c_keeps_the_run_and_resume_finishes_it(whole_run: Run) -> None:
     assert "--resume" in err.decode()
     assert b"Traceback" not in err
     assert read_run(path).t_end_s == found["t_end_s"]
-    assert frb(["runup", *LONG, "-o", str(path), "--resume", "--quiet", "--no-picture"]) == 0
+    frb("runup", *LONG, "-o", str(path), "--resume", "--quiet", "--no-picture")
     assert_same(read_run(path), whole_run)
 
 
-def test_a_killed_run_opens_and_resumes_to_the_same_numbers(whole_run: Run) -> None:
+def test_a_killed_run_opens_and_resumes_to_the_same_numbers(whole_run: Run, frb: Frb) -> None:
     path, chance = Path("a.h5"), random.Random(7)
     words = ("runup", *LONG, "-o", str(path), "--resume", "--quiet", "--no-picture")
     reached = []
@@ -206,6 +204,73 @@ def test_a_killed_run_opens_and_resumes_to_the_same_numbers(whole_run: Run) -> N
         assert run.status == "interrupted"
         reached.append(run.t_end_s)
     assert reached == sorted(reached)
-    assert frb(list(words)) == 0
+    frb(*words)
     assert_same(read_run(path), whole_run)
     assert os.listdir() == ["a.h5"]
+
+
+ROTATION_KEYS = {
+    "cavitation", "theory", "status", "displacement", "force_N", "torque_journal_N_m", "torque_shell_N_m", "p_max_Pa",
+    "p_min_Pa", "oil_fraction", "oil_balance", "error", "cost",
+}  # fmt: skip
+HISTORY_KEYS = {"t_s", "force_history_N", "probe_pressure_Pa", "gap_ratio"}
+COARSE = ("--set", "accuracy.mesh=[8, 32]")
+
+
+def test_rotation_of_a_shipped_case(frb: Frb, tmp_path: Path) -> None:
+    picture = tmp_path / "film.png"
+    words = ("rotation", "bearing-axial-groove", "--cavitation", "half-sommerfeld,elrod", *COARSE, "-o", str(picture))
+    found = frb(*words, "--json").document
+    assert set(found) == {"command", "case", "results"}
+    assert [result["cavitation"] for result in found["results"]] == ["half-sommerfeld", "elrod"]
+    for result in found["results"]:
+        assert set(result) == ROTATION_KEYS
+        assert result["status"] == "ok"
+        assert result["force_N"] == pytest.approx([0.0, 29.9], abs=0.01)
+        assert set(result["oil_balance"]) == {"in_m3_s", "out_m3_s", "defect_relative"}
+        assert set(result["cost"]) == {"cpu_s", "unknowns", "newton_iterations"}
+    assert abs(found["results"][1]["oil_balance"]["defect_relative"]) < 1e-10
+    assert picture.stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("test", ["squeeze", "whirl"])
+def test_histories(test: str, frb: Frb, tmp_path: Path) -> None:
+    picture = tmp_path / "history.png"
+    arguments = (test, test, "--cavitation", "half-sommerfeld,elrod", "--set", "motion.periods=1", *COARSE)
+    found = frb(*arguments, "-o", str(picture), "--json").document
+    for result in found["results"]:
+        assert set(result) == ROTATION_KEYS | HISTORY_KEYS
+        assert len({len(result[key]) for key in HISTORY_KEYS}) == 1
+        assert min(result["gap_ratio"]) == pytest.approx(0.4, abs=0.005)
+        assert 0.0 < result["error"]["force_relative"] < 0.1
+    assert picture.stat().st_size > 10_000
+
+
+def test_errors_in_the_table_refer_to_its_largest_force(frb: Frb) -> None:
+    """A force that nearly vanishes beside the others has a large error of its own, which says nothing beside them."""
+    motion = 'motion={eccentricity=0.6, speed="50 Hz"}'
+    words = ("rotation", "bearing", "--cavitation", "half-sommerfeld,two-phase", "--set", motion, *COARSE)
+    results = frb(*words, "--no-picture", "--json").document["results"]
+    table = frb(*words, "--no-picture").out
+    sizes = [math.hypot(*result["force_N"]) for result in results]
+    assert sizes[1] < 0.5 * sizes[0]
+    expected = [one["error"]["force_relative"] * size / max(sizes) for one, size in zip(results, sizes, strict=True)]
+    rows = [line.split() for line in table.splitlines() if "°" in line]
+    assert [float(row[-1]) for row in rows] == [float(f"{error:.0e}") for error in expected]
+
+
+def test_check_plans_a_kinematic_case(frb: Frb) -> None:
+    found = frb("check", "squeeze", "--json").document
+    assert {"gap", "film", "cells", "steps"} <= {decision["choice"] for decision in found["plan"]}
+
+
+def test_compare_runs_the_test_with_all_models_unless_told_otherwise(frb: Frb) -> None:
+    words = ("compare", "bearing-axial-groove", "--test", "rotation", *COARSE, "--no-picture")
+    found = frb(*words, "--json").document
+    assert (found["command"], found["test"]) == ("compare", "rotation")
+    models = [result["cavitation"] for result in found["results"]]
+    assert models == ["half-sommerfeld", "reynolds", "penalty", "peeken", "elrod", "two-phase", "barotropic", "bubbly"]
+    words_alone = ("rotation", "bearing-axial-groove", "--cavitation", "elrod", *COARSE, "--no-picture")
+    alone = frb(*words_alone, "--json").document
+    assert found["results"][4]["force_N"] == alone["results"][0]["force_N"]
+    assert frb(*words, "--theory", "short", "--json", code=2).document["status"] == "input-error"

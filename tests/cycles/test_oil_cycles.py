@@ -1,15 +1,14 @@
 """Limit cycles of films that keep their oil: the map of the time loop over a period, shooting, the command."""
 
-import json
 import math
 from functools import cache
 
 import numpy as np
 import pytest
+from commands import Frb
 
 import frbcli
 from frbcli.case.schema import Case
-from frbcli.cli.main import run
 from frbcli.cycles.columns import LimitCycles
 from frbcli.cycles.shooting.fixed_point import Conditions, SlowSpace, fixed_point, ritz, slow_space
 from frbcli.cycles.shooting.period_map import SAMPLES, PeriodMap, Wet, period_map, turned_back, wet_at
@@ -308,12 +307,11 @@ def test_a_film_that_stays_full_has_the_eigenvalues_of_sommerfeld() -> None:
 
 
 @pytest.mark.nightly
-def test_the_command_shoots(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]
+def test_the_command_shoots(frb: Frb, tmp_path) -> None:  # type: ignore[no-untyped-def]
     words = ["limit-cycles", "rigid-two-phase", "--json", "-o", str(tmp_path / "oil.png")]
     settings = ("bearing.supply.pressure=2 bar", "speed.from=75 Hz", "speed.to=79 Hz")
     words += [word for setting in settings for word in ("--set", setting)]
-    assert run([*words, "--csv", str(tmp_path / "oil.csv")]) == 0
-    document = json.loads(capsys.readouterr().out)
+    document = frb(*words, "--csv", str(tmp_path / "oil.csv")).document
     assert "are mass-conserving" in document["notes"][0]
     (branch,) = document["branches"]
     assert branch["points"][0]["torque_N_m"] is None

@@ -1,18 +1,17 @@
 """Stability maps: curves of Hopf points and folds over two numbers, the speed or of the case, against diagrams."""
 
-import json
 import math
 from functools import cache
 
 import numpy as np
 import pytest
+from commands import Frb
 from cycle_machines import UNIT_Hz, diagram, machine_of, rigid
 from marches import planned_system
 from scipy.interpolate import CubicSpline
 
 import frbcli
 from frbcli.case.reading.load import load_case_text
-from frbcli.cli.main import run
 from frbcli.cycles.method.equilibria import MachineCourse, resting_curve
 from frbcli.cycles.method.follower import Cycle
 from frbcli.cycles.stability_map import Across, StabilityMap
@@ -20,21 +19,20 @@ from frbcli.cycles.unbalance import Synchronous, synchronous_response
 
 
 @pytest.mark.nightly  # its rows are diagrams, see the next test
-def test_a_map_tells_where_the_criticality_changes(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]
+def test_a_map_tells_where_the_criticality_changes(frb: Frb, tmp_path) -> None:  # type: ignore[no-untyped-def]
     """Of the rigid rotor: hard at a large viscosity, soft at a small one; each row is that of the case itself."""
     (tmp_path / "rigid.toml").write_text(rigid(1.313, 2.4, 2.9).source_text)
     low, high = (rigid(gamma, 2.4, 2.9).oil.viscosity for gamma in (1.313, 4.538))
     words = ["limit-cycles", str(tmp_path / "rigid.toml"), "--points", "2", "--json"]
     picture = tmp_path / "map.png"
-    assert run([*words, "--and", f"oil.viscosity={low!r}..{high!r} Pa*s", "-o", str(picture)]) == 0
-    document = json.loads(capsys.readouterr().out)
+    document = frb(*words, "--and", f"oil.viscosity={low!r}..{high!r} Pa*s", "-o", str(picture)).document
     first, last = document["rows"]
     assert first["special"][0]["criticality"] == "supercritical"
     assert last["special"][0]["criticality"] == "subcritical"
     assert last["special"][0]["speed_Hz"] == pytest.approx(diagram(4.538, 2.4, 2.9).of("hopf")[0].speed_Hz, rel=1e-9)
     assert picture.exists()
     for wrong in ("oil.viscosity=1 Pa*s..2 m", "oil.viscosity", "oil.viscosity=1 Pa*s", "=1..2"):
-        assert run([*words, "--and", wrong]) == 2
+        frb(*words, "--and", wrong, code=2)
 
 
 @cache
@@ -156,22 +154,20 @@ def test_a_map_over_two_keys_meets_diagrams_over_the_speed(kind: str) -> None:
         assert other.criticality == point.criticality
 
 
-def test_the_command_draws_maps_over_two_keys(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]
+def test_the_command_draws_maps_over_two_keys(frb: Frb, tmp_path) -> None:  # type: ignore[no-untyped-def]
     (tmp_path / "rigid.toml").write_text(rigid(1.313, 2.4, 2.9).source_text)
     over = ["limit-cycles", str(tmp_path / "rigid.toml"), "--parameter", "bearing.clearance=48..52 um"]
     over += ["--points", "2", "--speed", f"{2.65 * UNIT_Hz} Hz", "--json", "-o", str(tmp_path / "map.png")]
     words = [*over, "--and", "bearing.width=9..11 mm", "--csv", str(tmp_path / "map.csv")]
-    assert run(words) == 0
-    document = json.loads(capsys.readouterr().out)
+    document = frb(*words).document
     assert (document["over"], document["and"]) == ("bearing.clearance", "bearing.width")
     point = document["curves"][0]["points"][0]
     assert 47.9 < point["over_value"] < 52.1
     assert 8.9 < point["value"] < 11.1
     assert (tmp_path / "map.png").exists()
     assert (tmp_path / "map.csv").read_text().startswith("bearing.clearance,over_unit,bearing.width,unit")
-    assert run([*words, "--with-unbalance"]) == 2
-    assert run([*over, "--and", "bearing.clearance=48 um .. 52 um"]) == 2
-    assert "both numbers of the map" in capsys.readouterr().err
+    frb(*words, "--with-unbalance", code=2)
+    assert "both numbers of the map" in frb(*over, "--and", "bearing.clearance=48 um .. 52 um", code=2).err
 
 
 @pytest.mark.nightly

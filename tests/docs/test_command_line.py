@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+from commands import Frb
 from paths import DOCS
 
-from frbcli.cli.main import COMMANDS, run
+from frbcli.cli.main import COMMANDS
 
 PAGE = DOCS / "command-line.md"
 LINES = Path(__file__).with_name("command_lines.md")
@@ -20,7 +21,7 @@ TEXTS = ("--help", "--version", "cases jeffcott", "schema", "docs conventions --
 # Said on slow machines, and where kernels are not compiled yet
 LEFT, COUNT, COMPILING = r".*(?:\d:\d\d|\?) left.*", r"(?:frame )?\d+ of \d+", "Compiling the kernels, once.*"
 PROGRESS = re.compile(rf"^(?:{LEFT}|{COUNT}|{COMPILING})\n", re.MULTILINE)
-# Their documents: test_cli_limit_cycles.py, that of the same picture that does not move, test_fit.py
+# Their documents: test_cli_stability.py, that of the same picture that does not move, test_fit.py
 LONG = (
     "limit-cycles my.toml --set film.theory=short --csv cycles.csv",
     "plot run.h5 --what orbit --animate",
@@ -56,19 +57,17 @@ def assert_says(said: str, words: list[str]) -> None:
 
 @pytest.mark.parametrize("line", table(), ids=lambda line: f"{line.words} ends with {line.code}")
 def test_each_line_of_the_table_is_true(
-    line: Line, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    line: Line, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, frb: Frb
 ) -> None:
     words = shlex.split(line.words)
     there = sorted(file.name for file in folder.iterdir())
     if line.words not in (*TEXTS, *LONG):  # wrong input leaves the folder as it is
         monkeypatch.chdir(folder if line.code == 2 else shutil.copytree(folder, tmp_path / "before"))
-        assert run([*words, "--json"]) == line.code
-        said = capsys.readouterr()
+        said = frb(*words, "--json", code=line.code)
         assert isinstance(json.loads(said.out), dict)
         assert_says(PROGRESS.sub("", said.err), line.err)
     monkeypatch.chdir(folder)
-    assert run(words) == line.code
-    said = capsys.readouterr()
+    said = frb(*words, code=line.code)
     assert_says(said.out, line.out)
     assert_says(PROGRESS.sub("", said.err), line.err)
     assert not [word for word in line.err if word in said.out]

@@ -1,14 +1,17 @@
-"""The rows of docs/validation.md that matter most, by the functions that the page is written with.
-
-Tolerances: thresholds and resting positions 0.5 % and 0.3 % of an independent, grid-refined program; printed numbers
-bear what thesis-numbers.toml says; rises move by tenths of a second with the noise that excites them.
-"""
+"""The rows of docs/validation.md that matter most, by the functions that the page is written with. Tolerances:
+thresholds and resting positions 0.5 % and 0.3 % of an independent, grid-refined program; printed numbers bear what
+thesis-numbers.toml says; rises move by tenths of a second with the noise that excites them. The rows of
+docs/textbooks.md: frb has the figures of their sources within the bounds of the rows."""
 
 import re
 import shlex
 from pathlib import Path
 
 import pytest
+from pages.textbook_bearings import FORMS, TABLES, nicholas
+from pages.textbook_rotors import ROTORS
+from pages.textbook_rows import Bench
+from pages.textbooks_page import PAGE, written
 from validation import chapter6, chapter6_rows, chapter_7, chapter_7_page, measures, validate
 
 from frbcli.case.reading.load import load_case
@@ -155,3 +158,32 @@ def test_every_shipped_case_is_on_the_cases_page() -> None:
     text = CASES_PAGE.read_text(encoding="utf-8")
     named = [name for name in shipped_names() if not name.startswith("floating-ring-")]
     assert [name for name in named if f" {name} " not in text and f"`{name}`" not in text] == []
+
+
+def hold(bench: Bench) -> None:
+    page = {(*cells[:2], cells[2].split(", ")[0]) for cells in written(PAGE.read_text(encoding="utf-8"))}
+    rows = bench()
+    assert rows
+    for row in rows:
+        assert row.holds, row.cells()
+        assert row.given in page
+
+
+QUICK = (*ROTORS, *FORMS, nicholas)  # the others are tables of films of finite length
+LONG = [pytest.param(bench, marks=pytest.mark.nightly) for bench in TABLES if bench not in QUICK]
+
+
+@pytest.mark.parametrize("bench", [*QUICK, *LONG], ids=lambda bench: bench.__name__)
+def test_figures_of_textbooks(bench: Bench) -> None:
+    hold(bench)
+
+
+def test_the_page_has_25_machines_and_says_why_figures_differ() -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    rows = written(text)
+    assert len({row[0].partition(":")[0] for row in rows}) >= 25
+    reasons = text.partition("## Why figures differ")[2].partition("\n## ")[0]
+    numbers = set(re.findall(r" \((\d+)\)(?:;| \|$)", text, re.MULTILINE))
+    assert numbers
+    for number in numbers:
+        assert f"\n{number}. " in reasons

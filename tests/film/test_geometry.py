@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from commands import Frb
 from differences import differences
 from volume_films import ROTATION, polar_motion, section_of
 
 from frbcli import load_case
 from frbcli.bearing_tests.history import march
-from frbcli.cli.main import run
 from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cells.film import Motion, VolumeFilm, path_seen_from, seen_from, supplied, supply_share, turned
@@ -358,20 +358,19 @@ def test_plan_says_beforehand_that_a_film_will_starve(
     assert (("supply", "starves") in told) is expected
 
 
-def test_check_shows_gap_and_reynolds_number(capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_shows_gap_and_reynolds_number(frb: Frb) -> None:
     """The bearing of table A.1, large engine, in a single film at its top speed; with (4.24) and Vogel's law (3.12)."""
     settings = ["bearing.clearance='35 um'", "oil.viscosity='10 mPa*s'", "oil.density='900 kg/m^3'",
                 "motion={eccentricity=0.3, speed='1950 Hz'}"]  # fmt: skip
     options = [word for setting in settings for word in ("--set", setting)]
-    assert run(["check", "bearing", "--json", *options]) == 0
-    spoken = capsys.readouterr()
+    spoken = frb("check", "bearing", "--json", *options)
     film = json.loads(spoken.out)["films"][0]
     assert film["reynolds_number"] == pytest.approx(482.0, abs=0.6)
     assert film["laminar"]
     assert film["turning_m"] == pytest.approx(-12.5e-3 * 0.095e-3 * 1.3**2, rel=0.01)
     assert "Warning" not in spoken.out + spoken.err
-    assert run(["check", "bearing", *options, "--set", "oil.viscosity='2 mPa*s'"]) == 0
-    assert "Warning: Reynolds number 2412 in film" in capsys.readouterr().out
+    said = frb("check", "bearing", *options, "--set", "oil.viscosity='2 mPa*s'")
+    assert "Warning: Reynolds number 2412 in film" in said.out
     engine = ["speed.to='1500 Hz'", "bearing.0.inner.diameter='25 mm'", "bearing.0.outer.diameter='40 mm'"]
     inner, outer = operating_points(load_case("turbocharger-heavy", engine))[:2]
     assert (inner.omega, outer.omega) == pytest.approx((1.3 * ENGINE, 0.3 * ENGINE))

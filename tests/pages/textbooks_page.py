@@ -20,7 +20,7 @@ INTRODUCTION = """\
 # Textbooks
 
 Rotors, bearings and dampers of textbooks, standards and other programs. `cd tests && python -m pages.textbooks_page`
-writes this page; `tests/docs/test_textbooks.py` checks it. Figures of the dissertation are in
+writes this page; `tests/docs/test_validation.py` checks it. Figures of the dissertation are in
 [validation](validation.md).
 
 - **machine**: an empty cell repeats the one above; (c): closed form, (p): other program, else printed. Numbered

@@ -1,9 +1,13 @@
-"""Pictures of made-up runs: what is drawn is what the run holds."""
+"""Pictures of made-up runs: what is drawn is what the run holds. What a notebook shows of cases, plans, runs and
+results."""
 
+import inspect
 import io
 import subprocess
 import sys
 from dataclasses import replace
+from importlib import import_module
+from importlib.resources import files
 from pathlib import Path
 
 import matplotlib as mpl
@@ -15,12 +19,14 @@ from matplotlib.figure import Figure
 from paths import ROOT
 from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
 
+import frbcli
 from frbcli.analysis.order_tracking import order_tracks
 from frbcli.case.reading.load import load_case
 from frbcli.errors import InputError, RunFileError
 from frbcli.plot.curves import orders_figure
 from frbcli.plot.motion import displacement_figure, eccentricity_figure, orbit_figure, quantity_figure, visible_steps
-from frbcli.plot.picture import fit
+from frbcli.plot.picture import PICTURES, fit
+from frbcli.plot.picture import picture as picture_of
 from frbcli.plot.signals import DRAWN_POINTS, Envelope, at_times, clearance, curve, labels, model
 from frbcli.plot.style import new_figure, picture, save_figure, styled
 from frbcli.plot.summary import ring_speed_figure, summary_figure
@@ -124,9 +130,8 @@ def test_waterfall_over_speed_at_constant_speed_is_refused() -> None:
         waterfall_figure(constant, over="speed")
 
 
-@pytest.mark.parametrize("over", ["time"])
-def test_cascade_has_a_curve_per_spectrum_on_its_own_floor(run: Run, over: str) -> None:
-    figure = waterfall_figure(run, over, cascade=True)  # type: ignore[arg-type]
+def test_cascade_has_a_curve_per_spectrum_on_its_own_floor(run: Run) -> None:
+    figure = waterfall_figure(run, "time", cascade=True)
     curves = [line for line in figure.axes[0].get_lines() if len(np.asarray(line.get_xdata())) > 200]
     floors = [np.min(line.get_ydata()) for line in curves if line.get_linestyle() == "-"]
     assert len(floors) == 60
@@ -253,11 +258,10 @@ def test_a_run_that_ends_soon_has_a_summary_too(run: Run, samples: int) -> None:
     assert len(save.axes) == (3 if samples < 64 else 4)
 
 
-@pytest.mark.parametrize("figure", [summary_figure, ])
-def test_a_run_without_samples_is_refused(run: Run, figure: object) -> None:
+def test_a_run_without_samples_is_refused(run: Run) -> None:
     empty = as_run({name: run[name][:0] for name in run.signals})
     with pytest.raises(RunFileError, match="no samples"):
-        figure(empty)  # type: ignore[operator]
+        summary_figure(empty)
 
 
 def test_a_run_without_clearance_has_no_waterfall(run: Run) -> None:
@@ -375,3 +379,44 @@ def test_a_long_orbit_shows_all_that_can_be_seen(run: Run, monkeypatch: pytest.M
     kept = set(map(tuple, np.round(lines / cell).astype(int)))
     reached = {(i + k, j + m) for i, j in kept for k in (-1, 0, 1) for m in (-1, 0, 1)}
     assert orbit <= reached
+
+
+PNG = b"\x89PNG\r\n\x1a\n"
+
+
+@pytest.fixture(scope="module")
+def case() -> frbcli.Case:
+    return frbcli.load_case("jeffcott", ["film.theory=short", "speed.duration=0.3 s"])
+
+
+def test_text_of_everything_is_a_few_lines(case: frbcli.Case, tmp_path: Path) -> None:
+    run = frbcli.runup(case, tmp_path / "run.h5")
+    found = frbcli.stability(case)
+    plan = frbcli.make_plan(case)
+    begins = {"Case jeffcott: ": case, "Plan\n": plan, "Run ": run, "Stability of jeffcott: ": found}
+    for words, thing in begins.items():
+        text = repr(thing)
+        assert text.startswith(words)
+        assert len(text.splitlines()) <= 20
+        assert max(map(len, text.splitlines())) < 300
+    assert "finished at 0.3 s" in repr(run)
+    assert picture_of(found)._repr_png_().startswith(PNG)  # type: ignore[attr-defined]
+    assert frbcli.picture(run).axes
+
+
+def test_what_has_no_picture_says_what_has(case: frbcli.Case) -> None:
+    with pytest.raises(frbcli.InputError, match=r"Case: has no picture. There are pictures of: AccuracyLadder"):
+        picture_of(case)
+    assert len(PICTURES) == 17
+
+
+@pytest.mark.parametrize("kind", PICTURES)
+def test_a_picture_is_of_the_result_that_its_function_takes(kind: str) -> None:
+    module, _, name = PICTURES[kind].partition(":")
+    draw = getattr(import_module(f"frbcli.plot.{module}"), name)
+    taken = next(iter(inspect.signature(draw).parameters.values())).annotation
+    assert taken == kind
+
+
+def test_types_are_told() -> None:
+    assert files("frbcli").joinpath("py.typed").is_file()

@@ -5,10 +5,10 @@ import os
 from pathlib import Path
 
 import pytest
+from commands import Frb
 from output_options import MODELS, SETTINGS, SHORT
 
 from frbcli.case.reading.load import load_case
-from frbcli.cli.main import run as frb
 from frbcli.cli.progress import Display
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.results.store import Run, read_run
@@ -66,42 +66,34 @@ def nothing_runs(whole: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("nothing_runs")
 @pytest.mark.parametrize("way", WAYS)
-def test_a_place_that_is_a_directory_is_refused_before_the_work(
-    way: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_place_that_is_a_directory_is_refused_before_the_work(way: str, frb: Frb) -> None:
     words, output, place = WAYS[way]
     Path(place).mkdir(parents=True)
-    assert frb([*words, "-o", output]) == 2
-    assert "is not a file" in capsys.readouterr().err
+    assert "is not a file" in frb(*words, "-o", output, code=2).err
 
 
 @pytest.mark.usefixtures("nothing_runs")
 @pytest.mark.parametrize("way", [way for way in WAYS if "sweep" not in WAYS[way][0]])
-def test_a_name_that_is_too_long_is_refused_before_the_work(way: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_name_that_is_too_long_is_refused_before_the_work(way: str, frb: Frb) -> None:
     words, output, _ = WAYS[way]
-    assert frb([*words, "-o", f"{'n' * 252}{Path(output).suffix}"]) == 2
-    assert "File name too long" in capsys.readouterr().err
+    assert "File name too long" in frb(*words, "-o", f"{'n' * 252}{Path(output).suffix}", code=2).err
     assert os.listdir() == ["whole.h5"]
 
 
 @pytest.mark.usefixtures("nothing_runs")
 @pytest.mark.parametrize("length", [251, 247])  # with .part, with -summary.png in place of .h5
-def test_what_is_put_behind_the_name_of_a_run_counts(length: int, capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["runup", *QUICK, "-o", f"{'n' * (length - 3)}.h5"]) == 2
-    assert "File name too long" in capsys.readouterr().err
+def test_what_is_put_behind_the_name_of_a_run_counts(length: int, frb: Frb) -> None:
+    assert "File name too long" in frb("runup", *QUICK, "-o", f"{'n' * (length - 3)}.h5", code=2).err
     assert os.listdir() == ["whole.h5"]
 
 
 @pytest.mark.usefixtures("nothing_runs")
 @pytest.mark.parametrize("content", [None, "of the user"])
-def test_what_is_in_place_of_the_lock_of_a_run_is_named(
-    content: str | None, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_is_in_place_of_the_lock_of_a_run_is_named(content: str | None, frb: Frb) -> None:
     lock = Path("run.h5.lock")
     lock.mkdir() if content is None else lock.write_text(content)
     for words in (["runup", *QUICK, "-o", "run.h5"], ["rundown", *QUICK, "-o", "run.h5", "--no-picture"]):
-        assert frb(words) == 2
-        assert "run.h5.lock" in capsys.readouterr().err
+        assert "run.h5.lock" in frb(*words, code=2).err
     assert lock.is_dir() if content is None else lock.read_text() == content
 
 
@@ -110,15 +102,14 @@ FULL = Path("/dev/full")
 
 @pytest.mark.usefixtures("without_progress")
 @pytest.mark.parametrize("way", ["runup", "stability", "sweep"])
-def test_a_picture_that_the_disk_does_not_take_is_a_remark(way: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_picture_that_the_disk_does_not_take_is_a_remark(way: str, frb: Frb) -> None:
     words, output, place = WAYS[way]
     Path(place).parent.mkdir(exist_ok=True)
     Path(place).symlink_to(FULL)
     options = {"sweep": ["--stability", "--jobs", "1"], "stability": ["--speed", "30 Hz"],
                "accuracy": ["--theory", "short"],
                "rotation": ["--set", "accuracy.mesh=[4, 16]", "--cavitation", "half-sommerfeld"]}  # fmt: skip
-    assert frb([*words, "-o", output, *options.get(way, [])]) == 0
-    said = capsys.readouterr()
+    said = frb(*words, "-o", output, *options.get(way, []))
     remarks = [line for line in said.err.splitlines() if not line.startswith(("1/2", "2/2"))]
     assert remarks == [
         f"No picture {place}: cannot be written: No space left on device. Choose another place with -o."
@@ -129,31 +120,27 @@ def test_a_picture_that_the_disk_does_not_take_is_a_remark(way: str, capsys: pyt
 @pytest.mark.parametrize(
     "words", [["waterfall", "run.h5", "--window", "10 ms"], ["plot", "run.h5"], ["report", "run.h5"]], ids=" ".join
 )
-def test_a_file_that_a_command_is_for_is_an_error(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_file_that_a_command_is_for_is_an_error(words: list[str], frb: Frb) -> None:
     runup(load_case("jeffcott", SETTINGS), "run.h5")
     place = Path("a.html" if words[0] == "report" else "a.png")
     place.symlink_to(FULL)
-    assert frb([*words, "-o", str(place)]) == 2
-    assert "No space left on device" in capsys.readouterr().err
+    assert "No space left on device" in frb(*words, "-o", str(place), code=2).err
     assert place.is_symlink()
 
 
 @pytest.mark.usefixtures("without_progress")
-def test_a_picture_that_cannot_be_drawn_leaves_run_document_and_code(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_picture_that_cannot_be_drawn_leaves_run_document_and_code(monkeypatch: pytest.MonkeyPatch, frb: Frb) -> None:
     def broken(_: Run) -> None:
         raise RuntimeError("no font\nat all")
 
     monkeypatch.setattr("frbcli.plot.summary.summary_figure", broken)
-    assert frb(["runup", *QUICK, "-o", "run.h5", "--json"]) == 0
-    said = capsys.readouterr()
+    said = frb("runup", *QUICK, "-o", "run.h5", "--json")
     assert json.loads(said.out)["status"] == "finished"
     assert said.err.endswith("No picture run-summary.png: RuntimeError: no font at all\n")
     assert read_run("run.h5").status == "finished"
 
 
-def test_an_older_picture_stays_where_a_new_one_cannot_be_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_older_picture_stays_where_a_new_one_cannot_be_drawn(monkeypatch: pytest.MonkeyPatch, frb: Frb) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     runup(load_case("jeffcott", SETTINGS), "run.h5")
@@ -163,16 +150,15 @@ def test_an_older_picture_stays_where_a_new_one_cannot_be_drawn(monkeypatch: pyt
         raise ValueError("no")
 
     monkeypatch.setattr(FigureCanvasAgg, "print_png", broken)
-    assert frb(["plot", "run.h5", "--what", "summary"]) == 2
+    frb("plot", "run.h5", "--what", "summary", code=2)
     assert Path("run-summary.png").read_text() == "older"
 
 
 @pytest.mark.usefixtures("without_progress")
 @pytest.mark.parametrize("suffix", [".png", ".svg"])
-def test_letters_that_a_font_lacks_are_one_remark(suffix: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_letters_that_a_font_lacks_are_one_remark(suffix: str, frb: Frb) -> None:
     words = ["stability", *QUICK, "--speed", "30 Hz", "--set", "title=漢字 漢", "-o", f"a{suffix}"]
-    assert frb(words) == 0
-    said = capsys.readouterr()
+    said = frb(*words)
     assert f"Campbell diagram: a{suffix}" in said.out
     expected = "" if suffix == ".svg" else f"a{suffix}: the font has no 漢, 字; boxes are drawn instead.\n"
     assert said.err in (expected, f"a{suffix}: the font has no 漢, 字; boxes are drawn instead.\n")

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from commands import Frb
 
 from frbcli.case.reading.shipped import find_shipped
-from frbcli.cli.main import run as frb
 
 WAIT_s = 60  # no command may take as long
 FIELD = 200_000  # characters, more than the 131072 that Python's reader of CSV takes
@@ -76,81 +76,72 @@ def _bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     signal.signal(signal.SIGALRM, before)
 
 
-def refuses(words: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> str:
+def refuses(words: tuple[str, ...], frb: Frb) -> str:
     """What a command says that ends with 2."""
     signal.alarm(WAIT_s)
-    code = frb(words)
+    said = frb(*words, code=2).err
     signal.alarm(0)
-    said = capsys.readouterr().err
-    assert code == 2, (words, code, said[-500:])
     assert said.strip()
     assert max(map(len, said.splitlines())) < 1000
     return said
 
 
 @pytest.mark.parametrize("hazard", HAZARDS)
-def test_a_file_that_is_none_of_what_it_should_be_is_refused(
-    hazard: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_file_that_is_none_of_what_it_should_be_is_refused(hazard: str, frb: Frb) -> None:
     HAZARDS[hazard](Path("given.csv"))
     for words in calls("given.csv"):
         if hazard in ("latin-1", "utf-16") and words[0] in ("compare", "fit", "waterfall"):
             continue  # which measurements may be
-        refuses(words, capsys)
+        refuses(words, frb)
 
 
 @pytest.mark.parametrize("name", ["n" * 300, "nowhere", "a\0b", "x/y/z", "~"])
-def test_a_name_of_no_file_is_refused(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_name_of_no_file_is_refused(name: str, frb: Frb) -> None:
     for words in calls(f"{name}.csv"):
-        refuses(words, capsys)
+        refuses(words, frb)
 
 
 @pytest.mark.parametrize("suffix", ["mat", "wav", "uff", "toml", "json", "h5", "txt"])
-def test_files_of_every_suffix_are_refused(suffix: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_files_of_every_suffix_are_refused(suffix: str, frb: Frb) -> None:
     if suffix == "uff":
         pytest.importorskip("pyuff")
     for hazard in ("pipe", "device", "directory", "empty", "zeros", "binary", "long field"):
         path = Path(f"{hazard.replace(' ', '-')}.{suffix}")
         HAZARDS[hazard](path)
         for words in calls(str(path)):
-            refuses(words, capsys)
+            refuses(words, frb)
 
 
-def test_a_list_of_utf_8_with_its_mark_is_read(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_list_of_utf_8_with_its_mark_is_read(frb: Frb) -> None:
     Path("points.csv").write_bytes(b"\xef\xbb\xbfrotor.unbalance\r\n1 g*mm\r\n2 g*mm\r\n")
-    assert frb(["sweep", "my.toml", "--stability", "--list", "points.csv", "--jobs", "1", "-o", "study", *SHORT]) == 0
+    frb("sweep", "my.toml", "--stability", "--list", "points.csv", "--jobs", "1", "-o", "study", *SHORT)
     assert "2 g*mm" in Path("study/sweep.csv").read_text()
-    capsys.readouterr()
 
 
 @pytest.mark.parametrize("option", [("--seed", "-1"), ("--samples", "-4"), ("--samples", "0"), ("--jobs", "0")])
-def test_a_number_of_an_option_that_cannot_be_is_refused(
-    option: tuple[str, ...], capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_number_of_an_option_that_cannot_be_is_refused(option: tuple[str, ...], frb: Frb) -> None:
     scattered = ("--set", "bearing.clearance=normal(35 um, 1 um)", "--samples", "4", "--stability", "--jobs", "1")
-    said = refuses(("sweep", "my.toml", *scattered, *SHORT, *option), capsys)
+    said = refuses(("sweep", "my.toml", *scattered, *SHORT, *option), frb)
     assert option[0] in said
 
 
 @pytest.mark.parametrize("hazard", ["pipe", "device", "directory", "binary", "zeros"])
-def test_a_log_of_no_sweep_is_refused(hazard: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_log_of_no_sweep_is_refused(hazard: str, frb: Frb) -> None:
     Path("points.csv").write_text("rotor.unbalance\n1 g*mm\n2 g*mm\n")
     Path("study").mkdir()
     HAZARDS[hazard](Path("study/sweep.jsonl"))
     words = ("sweep", "my.toml", "--stability", "--list", "points.csv", "--jobs", "1", "-o", "study", *SHORT)
-    assert "study/sweep.jsonl" in refuses(words, capsys)
+    assert "study/sweep.jsonl" in refuses(words, frb)
 
 
-def test_what_the_system_says_of_a_file_is_one_line(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_the_system_says_of_a_file_is_one_line(monkeypatch: pytest.MonkeyPatch, frb: Frb) -> None:
     """Wherever a library meets it."""
 
     def denied(*_: object) -> None:
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), "there/run.h5")
 
     monkeypatch.setattr("frbcli.results.store.read_run", denied)
-    assert refuses(("report", "run.h5"), capsys) == (
+    assert refuses(("report", "run.h5"), frb) == (
         "frb: file there/run.h5\n  file: cannot be used: Permission denied. Check path and permissions.\n"
     )
 
@@ -170,7 +161,5 @@ def test_what_the_system_says_of_a_file_is_one_line(
         ("turbocharger-car", "disk.turbine.position=-1e9 m", "disk.2.position"),
     ],
 )
-def test_sizes_of_no_machine_are_refused(
-    name: str, setting: str, key: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert key in refuses(("check", name, "--set", setting), capsys)
+def test_sizes_of_no_machine_are_refused(name: str, setting: str, key: str, frb: Frb) -> None:
+    assert key in refuses(("check", name, "--set", setting), frb)

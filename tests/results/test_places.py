@@ -14,14 +14,14 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from commands import Frb
 from output_options import CALLS, CASE, RUN, SETTINGS, SHORT, TABLE, Option, other_paths, output_options
 from paths import ROOT
 from synthetic_run import Rotor, parser_error, signals
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.reading.shipped import find_shipped
-from frbcli.cli.main import COMMANDS
-from frbcli.cli.main import run as frb
+from frbcli.cli.main import COMMANDS, run
 from frbcli.cli.options import here
 from frbcli.errors import InputError
 from frbcli.plot.moving import animate_orbits
@@ -79,7 +79,7 @@ def test_every_path_of_a_command_is_read_or_written() -> None:
 
 @pytest.mark.usefixtures("nothing_runs")
 @pytest.mark.parametrize("option", [o for o in OPTIONS if not o.folder], ids=lambda o: f"{o.command} {o.name}")
-def test_no_result_replaces_a_case_a_run_or_a_measurement(option: Option, capsys: pytest.CaptureFixture[str]) -> None:
+def test_no_result_replaces_a_case_a_run_or_a_measurement(option: Option, frb: Frb) -> None:
     before = {name: Path(name).read_bytes() for name in (CASE, RUN, TABLE)}
     suffix = option.suffix or (".csv" if option.command == "export" else ".png")
     Path(f"run{suffix}").symlink_to(RUN)
@@ -88,46 +88,44 @@ def test_no_result_replaces_a_case_a_run_or_a_measurement(option: Option, capsys
         wrong = "has to end|does not end|is not" if Path(target).suffix != suffix else "is not|is read by"
         if option.command in ("runup", "rundown") and target.startswith("run"):
             continue  # replaces runs, see below
-        assert frb([*CALLS[option.command], option.name, target]) == 2
-        assert re.search(wrong, capsys.readouterr().err)
+        assert re.search(wrong, frb(*CALLS[option.command], option.name, target, code=2).err)
         assert {name: Path(name).read_bytes() for name in before} == before
     assert Path(f"run{suffix}").is_symlink()
 
 
-def test_a_directory_of_results_is_made_of_no_file() -> None:
+def test_a_directory_of_results_is_made_of_no_file(frb: Frb) -> None:
     folders = [option for option in OPTIONS if option.folder]
     assert folders
     for option in folders:
         for target in (CASE, RUN, "points.csv"):
             before = Path(target).read_bytes()
-            assert frb([*CALLS[option.command], option.name, target]) == 2
+            frb(*CALLS[option.command], option.name, target, code=2)
             assert Path(target).read_bytes() == before
 
 
-def test_a_list_in_place_of_the_table_of_its_sweep_is_kept(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_list_in_place_of_the_table_of_its_sweep_is_kept(frb: Frb) -> None:
     Path("study").mkdir()
     text = "point,rotor.unbalance,status\n,1 g*mm,\n"
     Path("study/sweep.csv").write_text(text)
-    assert frb(["sweep", CASE, "--list", "study/sweep.csv", "--stability", "-o", "study"]) == 2
-    assert "is read by this command" in capsys.readouterr().err
+    said = frb("sweep", CASE, "--list", "study/sweep.csv", "--stability", "-o", "study", code=2)
+    assert "is read by this command" in said.err
     assert Path("study/sweep.csv").read_text() == text
 
 
-def test_two_results_have_two_places(capsys: pytest.CaptureFixture[str]) -> None:
+def test_two_results_have_two_places(frb: Frb) -> None:
     Path("a.png").symlink_to("b.csv")
-    assert frb([*CALLS["bearing"], "--csv", "b.csv", "-o", "a.png"]) == 2
-    assert "two results" in capsys.readouterr().err
+    assert "two results" in frb(*CALLS["bearing"], "--csv", "b.csv", "-o", "a.png", code=2).err
 
 
-def test_a_report_and_a_table_replace_their_like_and_nothing_else() -> None:
+def test_a_report_and_a_table_replace_their_like_and_nothing_else(frb: Frb) -> None:
     for words, name, other in ((["report", RUN], "a.html", "notes"), (["export", RUN], "a.csv", "t;x\n1;2\n")):
         for _ in range(2):
-            assert frb([*words, "-o", name, "--quiet"]) == 0
+            frb(*words, "-o", name, "--quiet")
         assert not Path(name).read_bytes().startswith(other.encode())
         Path(name).write_text("")
-        assert frb([*words, "-o", name, "--quiet"]) == 0
+        frb(*words, "-o", name, "--quiet")
         Path(name).write_text(other)
-        assert frb([*words, "-o", name, "--quiet"]) == 2
+        frb(*words, "-o", name, "--quiet", code=2)
         assert Path(name).read_text() == other
 
 
@@ -148,47 +146,46 @@ FOREIGN = {  # files of others of the kinds that frb writes, and the words that 
 
 @pytest.mark.parametrize("name", FOREIGN)
 def test_a_file_that_frb_did_not_write_is_replaced_by_force_alone(
-    name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    name: str, frb: Frb, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("frbcli.plot.moving.FRAMES", 2)
     words, other = FOREIGN[name]
     if name.endswith(".parquet"):
         pytest.importorskip("pyarrow")
     Path(name).write_bytes(other)
-    assert frb(words) == 2
-    assert "--force" in capsys.readouterr().err
+    assert "--force" in frb(*words, code=2).err
     assert Path(name).read_bytes() == other
-    assert frb([*words, "--force"]) == 0
+    frb(*words, "--force")
     written_first = Path(name).read_bytes()
     assert written_first != other
-    assert frb(words) == 0  # it is frb's own now
+    frb(*words)  # it is frb's own now
     Path(name).write_bytes(written_first[:-20])
     if name.endswith(".csv"):
-        assert frb(words) == 2  # and somebody's own again once it was changed
+        frb(*words, code=2)  # and somebody's own again once it was changed
 
 
-def test_force_replaces_nothing_that_the_command_reads() -> None:
+def test_force_replaces_nothing_that_the_command_reads(frb: Frb) -> None:
     before = Path(CASE).read_bytes(), Path(RUN).read_bytes()
-    assert frb([*CALLS["bearing"], "--no-picture", "--csv", CASE, "--force"]) == 2
-    assert frb(["export", RUN, "-o", RUN, "--force"]) == 2
-    assert frb(["report", RUN, "-o", RUN, "--force"]) == 2
+    frb(*CALLS["bearing"], "--no-picture", "--csv", CASE, "--force", code=2)
+    frb("export", RUN, "-o", RUN, "--force", code=2)
+    frb("report", RUN, "-o", RUN, "--force", code=2)
     assert (Path(CASE).read_bytes(), Path(RUN).read_bytes()) == before
-    assert frb(["runup", CASE, *SHORT, "-o", CASE, "--force", "--no-picture"]) == 2
-    assert frb(["runup", CASE, *SHORT, "-o", TABLE, "--force", "--no-picture"]) == 2  # runs replace runs alone
+    frb("runup", CASE, *SHORT, "-o", CASE, "--force", "--no-picture", code=2)
+    frb("runup", CASE, *SHORT, "-o", TABLE, "--force", "--no-picture", code=2)  # runs replace runs alone
 
 
-def test_a_case_is_written_to_a_new_file_or_by_force() -> None:
-    assert frb(["cases", "rigid", "-o", "notes.toml"]) == 0
-    assert frb(["cases", "jeffcott", "-o", "notes.toml"]) == 2
+def test_a_case_is_written_to_a_new_file_or_by_force(frb: Frb) -> None:
+    frb("cases", "rigid", "-o", "notes.toml")
+    frb("cases", "jeffcott", "-o", "notes.toml", code=2)
     assert Path("notes.toml").read_text() == find_shipped("rigid")
-    assert frb(["cases", "jeffcott", "-o", "notes.toml", "--force"]) == 0
+    frb("cases", "jeffcott", "-o", "notes.toml", "--force")
     assert Path("notes.toml").read_text() == find_shipped("jeffcott")
 
 
-def test_the_checksum_of_a_table_is_in_no_number() -> None:
+def test_the_checksum_of_a_table_is_in_no_number(frb: Frb) -> None:
     """All readers see the columns and numbers of a plain table, to the last bit where they read all digits."""
     run = read_run(RUN)
-    assert frb(["export", RUN, "-o", "a.csv"]) == 0
+    frb("export", RUN, "-o", "a.csv")
     text = Path("a.csv").read_text()
     assert text.splitlines()[0] == ",".join(run.signals)
     columns = np.stack([signal.values for signal in run.signals.values()], axis=1)
@@ -224,25 +221,24 @@ def test_a_table_with_a_number_in_its_last_line_is_told_by_its_checksum(line: st
         assert not has_checksum(Path("t.csv"))
 
 
-def test_a_link_stays_one_and_what_it_names_is_replaced() -> None:
+def test_a_link_stays_one_and_what_it_names_is_replaced(frb: Frb) -> None:
     Path("there").mkdir()
     Path("a.csv").symlink_to("there/b.csv")
     Path("there/b.csv").write_text("")
     Path("there/b.csv").chmod(0o640)
-    assert frb(["export", RUN, "-o", "a.csv", "--quiet"]) == 0
+    frb("export", RUN, "-o", "a.csv", "--quiet")
     assert Path("a.csv").is_symlink()
     assert Path("there/b.csv").read_text().startswith("time_s")
     assert Path("there/b.csv").stat().st_mode & 0o777 == 0o640
     assert os.listdir("there") == ["b.csv"]
 
 
-def test_a_pipe_takes_a_table_if_somebody_reads_it(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_pipe_takes_a_table_if_somebody_reads_it(frb: Frb) -> None:
     os.mkfifo("pipe")
-    assert frb(["export", RUN, "-o", "pipe"]) == 2
-    assert "nobody reads this pipe" in capsys.readouterr().err
-    assert frb(["export", RUN, "-o", "a.csv"]) == 0
+    assert "nobody reads this pipe" in frb("export", RUN, "-o", "pipe", code=2).err
+    frb("export", RUN, "-o", "a.csv")
     with Path("read").open("wb") as out, subprocess.Popen(["cat", "pipe"], stdout=out) as reader:
-        while frb(["export", RUN, "-o", "pipe"]) == 2:  # until it has opened it
+        while run(["export", RUN, "-o", "pipe"]) == 2:  # until it has opened it
             pass
         reader.wait(timeout=60.0)
     assert Path("read").read_bytes() == Path("a.csv").read_bytes()
@@ -252,7 +248,7 @@ def test_a_pipe_takes_a_table_if_somebody_reads_it(capsys: pytest.CaptureFixture
 # --- runs ---
 
 
-def test_a_run_is_replaced_by_force_alone(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_is_replaced_by_force_alone(frb: Frb) -> None:
     before = Path(RUN).read_bytes()
     other = load_case(CASE, (*SETTINGS, "oil.viscosity=13 mPa*s"))
     same = load_case(CASE, SETTINGS)
@@ -261,8 +257,7 @@ def test_a_run_is_replaced_by_force_alone(capsys: pytest.CaptureFixture[str]) ->
             again(case, RUN)
     with pytest.raises(InputError, match="another case"):
         frb_compare(other)
-    assert frb(["runup", CASE, *SHORT, "-o", RUN, "--no-picture"]) == 0
-    assert "holds this run already" in capsys.readouterr().err
+    assert "holds this run already" in frb("runup", CASE, *SHORT, "-o", RUN, "--no-picture").err
     assert Path(RUN).read_bytes() == before
     assert runup(other, RUN, force=True).status == "finished"
     assert Path(RUN).read_bytes() != before
@@ -299,19 +294,18 @@ def held(path: str) -> Iterator[subprocess.Popen[str]]:
 
 
 @pytest.mark.parametrize("link", [False, True])
-def test_a_second_run_is_refused_at_its_start(link: bool, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_second_run_is_refused_at_its_start(link: bool, frb: Frb) -> None:
     if link:
         Path("link.h5").symlink_to(Path.cwd() / "a.h5")
     words = ["runup", CASE, *SHORT, "-o", "link.h5" if link else "a.h5", "--no-picture"]
     with held("a.h5") as first:
-        assert frb(words) == 2
-        assert f"is being written by process {first.pid}." in capsys.readouterr().err
-        assert frb([*words, "--force"]) == 2
+        assert f"is being written by process {first.pid}." in frb(*words, code=2).err
+        frb(*words, "--force", code=2)
         assert not Path("a.h5").exists()
         Path("a.h5.0123abcd.part").write_text("of the other one")
     Path("b.h5.0123abcd.part").write_text("of nobody")
     assert Path("a.h5.lock").exists()  # it was killed
-    assert frb(words) == 0
+    frb(*words)
     assert sorted(path.name for path in Path().glob("?.h5*")) == ["a.h5", "b.h5.0123abcd.part"]
 
 
@@ -328,19 +322,18 @@ def test_a_run_within_itself_is_refused() -> None:
     assert not Path("a.h5.lock").exists()
 
 
-def test_a_run_on_a_full_disk_leaves_no_lock(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_on_a_full_disk_leaves_no_lock(frb: Frb) -> None:
     there = sorted(os.listdir())
     with full_at(0):
-        assert frb(["runup", CASE, *SHORT, "-o", "a.h5", "--no-picture"]) == 2
-    assert "a.h5\n  output: cannot be written: File too large." in capsys.readouterr().err
+        said = frb("runup", CASE, *SHORT, "-o", "a.h5", "--no-picture", code=2)
+    assert "a.h5\n  output: cannot be written: File too large." in said.err
     assert sorted(os.listdir()) == there
 
 
-def test_a_second_sweep_is_refused_at_its_start(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_second_sweep_is_refused_at_its_start(frb: Frb) -> None:
     Path("study").mkdir()
     with held("study/sweep.jsonl") as first:
-        assert frb([*CALLS["sweep"], "-o", "study"]) == 2
-        assert f"is being written by process {first.pid}." in capsys.readouterr().err
+        assert f"is being written by process {first.pid}." in frb(*CALLS["sweep"], "-o", "study", code=2).err
 
 
 def test_two_writers_leave_a_whole_file() -> None:
@@ -380,16 +373,16 @@ WRITING = {
 
 
 @pytest.mark.parametrize("way", WRITING)
-def test_a_full_disk_leaves_what_was_there(way: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_full_disk_leaves_what_was_there(way: str, frb: Frb) -> None:
     words = [*WRITING[way], "--quiet"]
     target = next(word for word in words if word.startswith("a."))
     if way != "cases":
-        assert frb(words) == 0
+        frb(*words)
     before = Path(target).read_bytes() if Path(target).exists() else None
     there = sorted(os.listdir())
     with full_at(100):
-        assert frb(words) == 2
-    assert f"file {target}\n  output: cannot be written: File too large." in capsys.readouterr().err
+        said = frb(*words, code=2)
+    assert f"file {target}\n  output: cannot be written: File too large." in said.err
     assert (Path(target).read_bytes() if Path(target).exists() else None) == before
     assert sorted(os.listdir()) == there
 
@@ -404,8 +397,8 @@ def test_an_animation_on_a_full_disk_leaves_nothing() -> None:
     assert sorted(os.listdir()) == sorted(["a.gif", *there])
 
 
-def test_an_interrupted_export_leaves_the_whole_table(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert frb(["export", RUN, "-o", "a.csv"]) == 0
+def test_an_interrupted_export_leaves_the_whole_table(monkeypatch: pytest.MonkeyPatch, frb: Frb) -> None:
+    frb("export", RUN, "-o", "a.csv")
     before, there, rows = Path("a.csv").read_bytes(), sorted(os.listdir()), [0]
     to_csv = pd.DataFrame.to_csv
 
@@ -417,7 +410,7 @@ def test_an_interrupted_export_leaves_the_whole_table(monkeypatch: pytest.Monkey
 
     monkeypatch.setattr("frbcli.results.export.LINES", 300)
     monkeypatch.setattr(pd.DataFrame, "to_csv", ending)
-    assert frb(["export", RUN, "-o", "a.csv"]) == 130
+    frb("export", RUN, "-o", "a.csv", code=130)
     assert (Path("a.csv").read_bytes(), sorted(os.listdir())) == (before, there)
 
 
@@ -431,45 +424,43 @@ def test_the_name_of_a_case_makes_no_hidden_file_and_no_option(name: str) -> Non
     assert path.name[0] not in ".-"
 
 
-def test_a_case_with_the_name_of_another_directory_writes_here() -> None:
-    assert frb(["plot", "jeffcott", "--what", "law", "--set", "name=../../x", "--quiet"]) == 0
+def test_a_case_with_the_name_of_another_directory_writes_here(frb: Frb) -> None:
+    frb("plot", "jeffcott", "--what", "law", "--set", "name=../../x", "--quiet")
     assert Path("x-law.png").is_file()
 
 
 def test_the_table_of_a_sweep_has_no_formula_of_its_list() -> None:
     Path("points.csv").write_text("title\n\"=cmd|' /C calc'!A0\"\n\x1b[31mred\n")
     words = ["sweep", CASE, *SHORT, "--list", "points.csv", "--stability", "--jobs", "1", "-o", "study", "--quiet"]
-    assert frb(words) in (0, 3)
+    assert run(words) in (0, 3)
     table = Path("study/sweep.csv").read_text()
     rows = list(csv.DictReader(table.splitlines()))
     assert [row["title"][:2] for row in rows] == ["'=", "?["]
     assert table.isprintable() or "\x1b" not in table
 
 
-def test_a_process_for_each_of_a_million_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_process_for_each_of_a_million_is_refused(tmp_path: Path, frb: Frb) -> None:
     words = ["sweep", "jeffcott", "--set", "rotor.unbalance=1 g*mm,2 g*mm", "-o", str(tmp_path / "s")]
-    assert frb([*words, "--jobs", "1000000"]) == 2
-    assert "--jobs = 1000000: are more processes than this machine can run" in capsys.readouterr().err
+    said = frb(*words, "--jobs", "1000000", code=2)
+    assert "--jobs = 1000000: are more processes than this machine can run" in said.err
     assert not (tmp_path / "s").exists()
 
 
 @pytest.mark.parametrize(("end", "status"), [(1e-9, 0), (1e-30, 2), (1e-200, 2), (1e-300, 2)])
-def test_a_run_of_no_time_at_all_has_a_page_or_is_refused(
-    end: float, status: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_run_of_no_time_at_all_has_a_page_or_is_refused(end: float, status: int, tmp_path: Path, frb: Frb) -> None:
     made = signals(Rotor(duration_s=0.2))
     made["time_s"] = np.linspace(0.0, end, len(made["time_s"]))
     units = {name: "s" if name == "time_s" else "Hz" if name.endswith("_Hz") else "m" if name.endswith("_m") else ""
              for name in made}  # fmt: skip
     writer = RunWriter(tmp_path / "run.h5", Header("t", "runup", "c", "", units, references={"clearance_m": 35e-6}))
     writer.append(made)
-    run: Run = writer.finish("finished", {}, {}, [])
-    assert frb(["report", str(run.path)]) == status
+    finished: Run = writer.finish("finished", {}, {}, [])
+    said = frb("report", str(finished.path), code=status)
     if status:  # steps below 1e-15 s are those of no machine
-        assert "time_s has a wrong form" in capsys.readouterr().err
+        assert "time_s has a wrong form" in said.err
         return
-    assert len(read_run(run.path)) == len(made["time_s"])
-    assert capsys.readouterr().err == ""
+    assert len(read_run(finished.path)) == len(made["time_s"])
+    assert said.err == ""
     assert PAGE.holds(tmp_path / "run-report.html")
 
 

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from commands import Frb
 from scipy.optimize import brentq
 from test_beam import transfer
 
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.reading.load import case_from_dict, load_case
 from frbcli.case.schema import Case
-from frbcli.cli.main import run as frb
 from frbcli.equilibrium.linearised import RestingFilm
 from frbcli.errors import InputError
 from frbcli.linear.modes import direct_springs, film_springs, natural_modes
@@ -235,28 +235,24 @@ def test_springs_of_films_at_rest(heavy: Case) -> None:
     assert unequal.stiffness_N_m == pytest.approx((4e6 / 3, 4e6))
 
 
-def test_command_with_a_stiffness(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_command_with_a_stiffness(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, frb: Frb) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "80")
     call = ["stability", "turbocharger-heavy", "--modes", "5e6 N/m", "--speed", "350 Hz", "--json"]
-    assert frb(call) == 0
-    said = capsys.readouterr()
+    said = frb(*call)
     document = json.loads(said.out)
     free, held = document["natural_frequencies"]
     assert free["free_bending_Hz"][0] == pytest.approx(619.0, rel=1e-3)
     assert (held["stiffness_N_m"], held["points"][0]["speed_Hz"]) == ([5e6, 5e6], pytest.approx(350.0))
     assert {"frequency_Hz", "direction", "kind"} == set(held["points"][0]["modes"][0])
     assert held["reduction"]["modes"] == 6
-    assert frb(call[:-1]) == 0
-    text = capsys.readouterr().out
+    text = frb(*call[:-1]).out
     assert "bending modes of 619.3, 1120, 2850 Hz" in text
     assert max(map(len, text.splitlines())) <= 80
     assert (tmp_path / "turbocharger-heavy-modes.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_one_option_has_the_modes_of_any_rotor(capsys: pytest.CaptureFixture[str]) -> None:
+def test_one_option_has_the_modes_of_any_rotor(frb: Frb) -> None:
     """Closed forms: sqrt(2 k / m) of a rigid rotor, two masses and springs in a row of a Jeffcott rotor, at 0 Hz."""
     rigid, jeffcott = load_case("rigid").rotor, load_case("jeffcott").rotor
     k = 1e6
@@ -264,18 +260,17 @@ def test_one_option_has_the_modes_of_any_rotor(capsys: pytest.CaptureFixture[str
     row = np.sort(np.roots([m * j, -(m * (c + 2 * k) + j * c), 2 * k * c]))
     exact = {"rigid": [2 * k / rigid.mass], "jeffcott": row.tolist()}  # type: ignore[union-attr]
     for name, squares in exact.items():
-        assert frb(["stability", name, "--no-picture", "--modes", "1e6 N/m", "--speed", "0 Hz", "--json"]) == 0
-        _, held = json.loads(capsys.readouterr().out)["natural_frequencies"]
+        said = frb("stability", name, "--no-picture", "--modes", "1e6 N/m", "--speed", "0 Hz", "--json")
+        _, held = said.document["natural_frequencies"]
         found = [mode["frequency_Hz"] for mode in held["points"][0]["modes"] if mode["direction"] == "forward"]
         assert found == pytest.approx(np.sqrt(squares) / (2 * math.pi), rel=1e-9)
-    assert frb(["stability", "jeffcott", "--no-picture", "--modes", "free", "--json"]) == 0
-    free, _ = json.loads(capsys.readouterr().out)["natural_frequencies"]
+    free, _ = frb("stability", "jeffcott", "--no-picture", "--modes", "free", "--json").document["natural_frequencies"]
     assert free["free_bending_Hz"] == pytest.approx([math.sqrt(c * (1 / m + 1 / j)) / (2 * math.pi)], rel=1e-9)
 
 
-def test_rings_of_a_free_rotor_are_apart(capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["stability", "turbocharger-heavy", "--no-picture", "--modes", "free", "--speed", "0 Hz"]) == 0
-    told = " ".join(capsys.readouterr().out.split())
+def test_rings_of_a_free_rotor_are_apart(frb: Frb) -> None:
+    said = frb("stability", "turbocharger-heavy", "--no-picture", "--modes", "free", "--speed", "0 Hz")
+    told = " ".join(said.out.split())
     assert "4 rigid-body motions of 0 Hz, and its 2 rings are apart" in told
 
 

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import Frb
 from marches import planned_system
 
 from frbcli.analysis.uncertainty import partners
 from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
-from frbcli.cli.main import run as frb
 from frbcli.errors import NotConverged
 from frbcli.results.store import Run, read_run
 from frbcli.runs import march, second_run
@@ -203,17 +203,15 @@ def test_verified_by_shorter_steps(tmp_path: Path) -> None:
     assert run.error["coupling"] is None
 
 
-def test_command_tells_what_a_finer_run_changes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_command_tells_what_a_finer_run_changes(tmp_path: Path, frb: Frb) -> None:
     settings = [part for setting in SHORT_RUN for part in ("--set", setting)]
     options = ["--verify", "--json", "--no-picture", "-o", str(tmp_path / "run.h5")]
-    assert frb(["runup", "jeffcott", *settings, *options]) == 0
-    out = capsys.readouterr()
+    out = frb("runup", "jeffcott", *settings, *options)
     verified = json.loads(out.out)["error"]["verified"]
     assert 0.0 < verified["eccentricity"] < 1e-3
     assert verified["coupling"] is None
     options.remove("--json")
-    assert frb(["runup", "jeffcott", *settings, *options, "--force"]) == 0
-    assert "verified: with half the tolerance" in capsys.readouterr().out
+    assert "verified: with half the tolerance" in frb("runup", "jeffcott", *settings, *options, "--force").out
 
 
 CASE = ("film.theory=short", "output.step=0.2 ms")
@@ -253,13 +251,11 @@ def test_a_run_that_has_ended_gets_them_later(run: Run, case: Case, tmp_path: Pa
     assert read_run(path).checkpoint_samples == len(first)
 
 
-def test_the_terminal_says_them_and_their_cost(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_terminal_says_them_and_their_cost(tmp_path: Path, frb: Frb) -> None:
     words = ["jeffcott", *(word for key in CASE for word in ("--set", key)), "--no-picture"]
     words += ["-o", str(tmp_path / "run.h5")]
-    assert frb(["runup", *words]) == 0
-    assert "No uncertainties of the events: they take about 0." in capsys.readouterr().out
-    assert frb(["runup", *words, "--uncertainty"]) == 0
-    told = capsys.readouterr()
+    assert "No uncertainties of the events: they take about 0." in frb("runup", *words).out
+    told = frb("runup", *words, "--uncertainty")
     assert re.search(r"14\d\.\d\(\d\)", told.out)
     assert "second, coarser run" in told.out
     assert "--force" not in told.err

@@ -114,7 +114,7 @@ def test_oil_that_leaves_short_films_in_motion(tmp_path: Path) -> None:
     np.testing.assert_allclose(run["oil_flow_m3_s"][inner], expected[inner], atol=3e-3 * expected.max())
 
 
-@pytest.mark.nightly  # a time loop of its own; oil of watched cells: test_given_flow_run.py
+@pytest.mark.nightly  # a time loop of its own; oil of watched cells: test_given_flow.py
 def test_films_on_cells_settle_to_the_sheet(tmp_path: Path) -> None:
     """In the mean over a turn of the cells, at half the speed of the rotor: 24 of them leave a ripple of 1e-3 of the
     force, whose phase follows the steps, and with them round-off. 100 steps per revolution resolve it."""

@@ -14,11 +14,12 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
+from commands import Frb
 from output_options import MODELS, SETTINGS, SHORT
 
 from frbcli.bearing_tests import tested_film
 from frbcli.case.reading.load import load_case
-from frbcli.cli.main import run as frb
+from frbcli.cli.main import run
 from frbcli.errors import InputError, NotConverged
 from frbcli.results.container import seal
 from frbcli.runs.march import March
@@ -67,32 +68,29 @@ def test_an_interrupted_run_is_not_replaced_unasked(interrupted: Path) -> None:
     assert runup(load_case("jeffcott", SETTINGS), interrupted, force=True).status == "finished"
 
 
-def test_command_names_the_ways_out_of_an_interrupted_run(
-    interrupted: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_command_names_the_ways_out_of_an_interrupted_run(interrupted: Path, frb: Frb) -> None:
     before = interrupted.read_bytes()
-    assert frb(["runup", *QUICK, "-o", "run.h5"]) == 2
-    assert "--resume" in capsys.readouterr().err
+    assert "--resume" in frb("runup", *QUICK, "-o", "run.h5", code=2).err
     assert interrupted.read_bytes() == before
-    assert frb(["runup", *QUICK, "-o", "run.h5", "--resume", "--force"]) == 2
+    frb("runup", *QUICK, "-o", "run.h5", "--resume", "--force", code=2)
     assert interrupted.read_bytes() == before
-    assert frb(["runup", *QUICK, "-o", "run.h5", "--resume", "--no-picture"]) == 0
+    frb("runup", *QUICK, "-o", "run.h5", "--resume", "--no-picture")
     interrupted.write_bytes(before)
-    assert frb(["runup", *QUICK, "-o", "run.h5", "--force", "--no-picture"]) == 0
+    frb("runup", *QUICK, "-o", "run.h5", "--force", "--no-picture")
 
 
-def test_a_run_that_has_ended_is_replaced_as_the_readme_s_first_line_needs() -> None:
+def test_a_run_that_has_ended_is_replaced_as_the_readme_s_first_line_needs(frb: Frb) -> None:
     for _ in range(2):
-        assert frb(["runup", *QUICK, "-o", "run.h5", "--quiet"]) == 0
-        assert frb(["waterfall", "run.h5", "-o", "waterfall.png", "--window", "10 ms", "--quiet"]) == 0
+        frb("runup", *QUICK, "-o", "run.h5", "--quiet")
+        frb("waterfall", "run.h5", "-o", "waterfall.png", "--window", "10 ms", "--quiet")
 
 
-def test_an_interruption_before_the_first_step_leaves_no_run(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interruption_before_the_first_step_leaves_no_run(monkeypatch: pytest.MonkeyPatch, frb: Frb) -> None:
     with monkeypatch.context() as patch:
         patch.setattr(March, "compile", ask_to_end)
-        assert frb(["runup", *QUICK, "-o", "run.h5"]) == 130
+        frb("runup", *QUICK, "-o", "run.h5", code=130)
     assert not Path("run.h5").exists()
-    assert frb(["runup", *QUICK, "-o", "run.h5", "--no-picture"]) == 0
+    frb("runup", *QUICK, "-o", "run.h5", "--no-picture")
 
 
 # --- rows ---
@@ -118,11 +116,10 @@ def test_finished_rows_of_a_comparison_are_printed(
     code: int,
     status: str,
     monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    frb: Frb,
 ) -> None:
     after_calls(monkeypatch, March, "compile", 1, error)
-    assert frb(["compare", *QUICK, *MODELS, "--json"]) == code
-    said = capsys.readouterr()
+    said = frb("compare", *QUICK, *MODELS, "--json", code=code)
     found = json.loads(said.out)
     assert found["status"] == status
     (row,) = found["results"]
@@ -130,13 +127,13 @@ def test_finished_rows_of_a_comparison_are_printed(
     assert " ".join(found["message"].split()) == " ".join(str(error).split())
 
 
-def test_a_comparison_without_a_row_ends_as_its_first_run() -> None:
+def test_a_comparison_without_a_row_ends_as_its_first_run(frb: Frb) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(March, "compile", ask_to_end)
-        assert frb(["compare", *QUICK, *MODELS]) == 130
+        frb("compare", *QUICK, *MODELS, code=130)
     with pytest.MonkeyPatch.context() as patch:
         after_calls(patch, March, "compile", 0, NotConverged("no"))
-        assert frb(["compare", *QUICK, *MODELS]) == 3
+        frb("compare", *QUICK, *MODELS, code=3)
     assert os.listdir() == []
 
 
@@ -157,13 +154,10 @@ def test_a_comparison_goes_on_with_the_interrupted_runs_that_it_kept(monkeypatch
     assert taken_up == ["yes"]
 
 
-def test_rungs_of_a_ladder_stay_when_it_is_interrupted(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_rungs_of_a_ladder_stay_when_it_is_interrupted(monkeypatch: pytest.MonkeyPatch, frb: Frb) -> None:
     after_calls(monkeypatch, ladder, "runup", 4, KeyboardInterrupt())
     words = ["accuracy", "jeffcott", "--theory", "short", "--until", "10 ms", "--no-picture"]
-    assert frb([*words, "--json"]) == 130
-    said = capsys.readouterr()
+    said = frb(*words, "--json", code=130)
     found = json.loads(said.out)
     assert (found["status"], len(found["ladder"])) == ("interrupted", 2)
     assert "2 rungs" not in said.err  # text is for people, without --json
@@ -176,13 +170,10 @@ def test_a_ladder_without_its_reference_is_none(monkeypatch: pytest.MonkeyPatch)
         ladder.accuracy(load_case("jeffcott"), 0.01, ["short"])
 
 
-def test_models_of_a_test_that_are_done_are_printed(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_models_of_a_test_that_are_done_are_printed(monkeypatch: pytest.MonkeyPatch, frb: Frb) -> None:
     after_calls(monkeypatch, tested_film, "film_moment", 1, KeyboardInterrupt())
     words = ["rotation", "bearing-axial-groove", "--set", "accuracy.mesh=[4, 16]", "--no-picture", "--json"]
-    assert frb([*words, "--cavitation", "half-sommerfeld,reynolds"]) == 130
-    said = capsys.readouterr()
+    said = frb(*words, "--cavitation", "half-sommerfeld,reynolds", code=130)
     found = json.loads(said.out)
     assert (found["status"], [result["cavitation"] for result in found["results"]]) == (
         "interrupted",
@@ -201,9 +192,7 @@ def test_an_interrupted_point_ends_a_sweep_in_this_process(monkeypatch: pytest.M
     assert len(list((tmp_path / "s" / "runs").iterdir())) == 1
 
 
-def test_an_interrupted_verification_is_no_second_run(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_an_interrupted_verification_is_no_second_run(monkeypatch: pytest.MonkeyPatch, frb: Frb) -> None:
     case = load_case("jeffcott", SETTINGS)
     run = runup(case, "run.h5")
     seen: list[float] = []
@@ -218,26 +207,22 @@ def test_an_interrupted_verification_is_no_second_run(
     monkeypatch.undo()
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("frbcli.studies.accuracy.verify", ask_to_end)
-        assert frb(["runup", *QUICK, "-o", "again.h5", "--no-picture", "--verify", "--json"]) == 130
-    found = json.loads(capsys.readouterr().out)
+        found = frb("runup", *QUICK, "-o", "again.h5", "--no-picture", "--verify", "--json", code=130).document
     assert (found["status"], found["error"]["verified"]) == ("finished", {"status": "interrupted"})
 
 
 # --- a full disk ---
-def test_a_full_disk_is_one_line_wherever_it_is_met(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_full_disk_is_one_line_wherever_it_is_met(monkeypatch: pytest.MonkeyPatch, frb: Frb) -> None:
     full = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "/cache/of/kernels")
     after_calls(monkeypatch, March, "compile", 0, full)  # numba does not expect it
-    assert frb(["runup", *QUICK, "-o", "run.h5", "--json"]) == 1
-    said = capsys.readouterr()
+    said = frb("runup", *QUICK, "-o", "run.h5", "--json", code=1)
     assert json.loads(said.out)["message"] == "No space left on device: /cache/of/kernels"
     lines = [line for line in said.err.splitlines() if not line.startswith("Compiling the kernels")]  # where none are
     assert lines == ["frb: No space left on device: /cache/of/kernels"]
     monkeypatch.undo()
     after_calls(monkeypatch, March, "compile", 0, OSError(errno.EIO, "a bug"))
     with pytest.raises(OSError, match="a bug"):
-        frb(["runup", *QUICK, "-o", "run.h5"])
+        run(["runup", *QUICK, "-o", "run.h5"])
 
 
 # --- a run file that somebody has made up ---
@@ -275,16 +260,13 @@ def warm_run(tmp_path_factory: pytest.TempPathFactory) -> bytes:
 
 
 @pytest.mark.parametrize("forgery", FORGED)
-def test_a_checkpoint_of_another_machine_is_refused(
-    forgery: str, warm_run: bytes, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_checkpoint_of_another_machine_is_refused(forgery: str, warm_run: bytes, frb: Frb) -> None:
     """By what resumes it; what reads the run says so, or has no need of it."""
     Path("run.h5").write_bytes(warm_run)
     forged(Path("run.h5"), *FORGED[forgery])
     before = Path("run.h5").read_bytes()
     words = ["runup", "jeffcott", *(word for each in WARM for word in ("--set", each)), "-o", "run.h5", "--no-picture"]
-    assert frb([*words, "--resume"]) == 2
-    assert "cannot be resumed" in capsys.readouterr().err
+    assert "cannot be resumed" in frb(*words, "--resume", code=2).err
     assert Path("run.h5").read_bytes() == before
-    assert frb(["report", "run.h5"]) in (0, 2)
-    assert frb(["export", "run.h5"]) in (0, 2)
+    assert run(["report", "run.h5"]) in (0, 2)
+    assert run(["export", "run.h5"]) in (0, 2)

@@ -9,10 +9,11 @@ from typing import Any
 import click
 import numpy as np
 import pytest
+from commands import Frb
 
 import frbcli
 from frbcli.case.schema import Case
-from frbcli.cli.main import COMMANDS, command_named, run
+from frbcli.cli.main import COMMANDS, command_named
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import InputError
 from frbcli.scene.gate.gate import faults, require
@@ -109,17 +110,14 @@ def test_functions_refuse(name: str, faulty: Faulty, monkeypatch: pytest.MonkeyP
 
 @FAULTY
 @pytest.mark.parametrize("name", case_commands())
-def test_commands_refuse(
-    name: str, faulty: Faulty, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_commands_refuse(name: str, faulty: Faulty, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, frb: Frb) -> None:
     monkeypatch.chdir(tmp_path)
     if "measured.csv" in WORDS.get(name, ()):
         _measured(tmp_path / "measured.csv")
     source, settings, sentence = faulty
     words = [word for setting in (*settings, MOTION) for word in ("--set", setting)]
     before = set(tmp_path.iterdir())
-    assert run([name, source, *words, *WORDS.get(name, ())]) == 2
-    assert sentence in capsys.readouterr().err
+    assert sentence in frb(name, source, *words, *WORDS.get(name, ()), code=2).err
     assert set(tmp_path.iterdir()) == before
 
 

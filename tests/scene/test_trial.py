@@ -1,21 +1,29 @@
-"""The error that is expected of a run, from two short runs before it."""
+"""The error that is expected of a run, from two short runs before it. Numbers that ask too much: what a run holds in
+memory, what it costs before it begins, and that it is told before."""
 
 import json
 import math
+import shutil
+import subprocess
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import Frb
 
 from frbcli.arrays import Array
+from frbcli.case.reading import load
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cli import check
-from frbcli.cli.main import run as frb
 from frbcli.compiled import CompilationNeededError
 from frbcli.errors import NotConverged
 from frbcli.runs import march
 from frbcli.runs import second_run as tried
+from frbcli.runs.run import runup
+from frbcli.scene.course import MOST_SAMPLES, longest_step
 from frbcli.scene.machine.system import make_segments
 from frbcli.scene.planning.cell_choice import run_up_profile
 from frbcli.scene.planning.film_choice import Plan
@@ -122,33 +130,83 @@ def test_a_run_that_does_not_begin_leaves_the_error_to_its_cells(monkeypatch: py
     def fails(*_: object) -> object:
         raise NotConverged("no")
 
-    monkeypatch.setattr(march, "March", fails)
+    monkeypatch.setattr(tried, "March", fails)
     monkeypatch.setattr(tried, "kept_beside", lambda _: lambda make: make)
     assert tried.tried_error(case, trial) is None
 
 
-def test_check_tells_what_was_tried_and_compiles_nothing_for_it(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_check_tells_what_was_tried_and_compiles_nothing_for_it(monkeypatch: pytest.MonkeyPatch, frb: Frb) -> None:
     case, trial = trial_of(RINGS, *LOOSE)
     assert trial is not None
     found = tried.tried_error(case, trial)
     assert found is not None
-    assert frb(["check", RINGS, "--json", "--set", *LOOSE]) == 0
-    expected = json.loads(capsys.readouterr().out)["expected"]
+    expected = frb("check", RINGS, "--json", "--set", *LOOSE).document["expected"]
     assert expected["eccentricity_error"] == pytest.approx(found.error)
     assert expected["tried_until_s"] == pytest.approx(found.until_s)
-    assert frb(["check", RINGS, "--set", *LOOSE]) == 0
-    assert "short runs on these and on 64 x 8 cells" in " ".join(capsys.readouterr().out.split())
+    assert "short runs on these and on 64 x 8 cells" in " ".join(frb("check", RINGS, "--set", *LOOSE).out.split())
 
     def needs_a_compiler(*_: object) -> None:
         raise CompilationNeededError
 
     monkeypatch.setattr(tried, "tried_error", needs_a_compiler)
-    assert frb(["check", RINGS, "--json", "--set", *LOOSE]) == 0
-    expected = json.loads(capsys.readouterr().out)["expected"]
+    expected = frb("check", RINGS, "--json", "--set", *LOOSE).document["expected"]
     assert expected["eccentricity_error"] == expected_error(trial.plan).eccentricity
     assert expected["tried_until_s"] is None
-    assert frb(["check", RINGS, "--set", *LOOSE]) == 0
-    assert check.BY_CELLS_WITH_RINGS + check.UNTRIED in " ".join(capsys.readouterr().out.split())
+    assert check.BY_CELLS_WITH_RINGS + check.UNTRIED in " ".join(frb("check", RINGS, "--set", *LOOSE).out.split())
     assert np.isfinite(found.speed_Hz)
+
+
+def test_a_run_of_an_instant_holds_few_samples(tmp_path: Path) -> None:
+    """A step of a millisecond would pass 5e11 of its samples."""
+    case = load_case("jeffcott", ["speed.duration=1e-14 s", "speed.hold=0 s", "output.step=2e-15 s"])
+    run = runup(case, tmp_path / "run.h5")
+    assert run.status == "finished"
+    assert len(run) == 6
+
+
+def test_a_step_passes_no_more_samples_than_fit_in_memory() -> None:
+    fine = load_case("jeffcott", ["speed.duration=1 ms", "speed.hold=0 s", "output.step=1e-10 s"])
+    assert longest_step(fine, make_plan(fine)) == MOST_SAMPLES * 1e-10
+    usual = load_case("jeffcott")
+    assert longest_step(usual, make_plan(usual)) == 1e-3
+
+
+# --- little memory ---
+
+needs_ulimit = pytest.mark.skipif(shutil.which("sh") is None or sys.platform == "win32", reason="ulimit -v")
+
+
+def limited(kilobytes: int, *arguments: str) -> subprocess.CompletedProcess[str]:
+    command = ["sh", "-c", f'ulimit -v {kilobytes} && exec "$@"', "sh", sys.executable, "-m", "frbcli", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=100)
+
+
+@needs_ulimit
+@pytest.mark.parametrize("kilobytes", [80_000, 500_000])
+def test_little_memory_is_told_in_one_line(kilobytes: int, tmp_path: Path) -> None:
+    """Without asking before, libraries fail to load, wait forever, or abort."""
+    done = limited(kilobytes, "runup", "jeffcott", "--json", "-o", str(tmp_path / "run.h5"))
+    assert done.returncode == 1
+    assert done.stderr.count("\n") == 1
+    assert done.stderr.startswith("frb: out of memory")
+    assert f"{kilobytes * 1024 / 1e6:.0f} MB (ulimit -v)" in done.stderr
+    assert json.loads(done.stdout)["status"] == "error"
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("error", [MemoryError(), MemoryError("Unable to allocate 116. TiB for an array")])
+def test_memory_that_runs_out_later_is_told_in_one_line(
+    error: MemoryError, monkeypatch: pytest.MonkeyPatch, frb: Frb
+) -> None:
+    def fails(*_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(load, "load_case", fails)
+    told = frb("check", "jeffcott", code=1).err
+    assert told.count("\n") == 1
+    assert told.startswith(f"frb: out of memory{f' ({error})' if str(error) else ''}.")
+
+
+@needs_ulimit
+def test_what_computes_nothing_needs_little_memory() -> None:
+    assert "jeffcott" in limited(60_000, "cases", "--json").stdout

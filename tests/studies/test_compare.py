@@ -1,4 +1,5 @@
-"""`frb compare`: the same run-up with several models of the films."""
+"""`frb compare`: the same run-up with several models of the films. Runs beside each other: the same as one after the
+other, with progress and a clean end."""
 
 import json
 import os
@@ -8,18 +9,19 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import Frb
 from synthetic_run import Rotor, as_run, signals
 
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
-from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
 from frbcli.film.cavitation.table import names
 from frbcli.plot.studies import comparison_figure
-from frbcli.results.store import Run, read_run
+from frbcli.results.store import Run, check_output, read_run
 from frbcli.runs import march
 from frbcli.runs.march import Progress
 from frbcli.runs.run import runup
+from frbcli.studies.against import RunTask, in_turn, side_by_side
 from frbcli.studies.compare import Comparison, Deviation, Variant, compare, deviation, make_variants
 
 QUICK = ("speed.duration=0.4 s", "speed.from=20 Hz", "speed.to=120 Hz", "output.step=2e-4 s", "accuracy.mesh=[4, 48]")
@@ -172,13 +174,11 @@ SETTINGS = [word for setting in QUICK for word in ("--set", setting)]
 
 
 def test_command_says_one_json_document_one_table_one_picture(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, frb: Frb
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert frb(["compare", "jeffcott", *SETTINGS, "--json"]) == 0
-    said = capsys.readouterr()
-    assert frb(["compare", "jeffcott", *SETTINGS]) == 0
-    text = capsys.readouterr().out
+    said = frb("compare", "jeffcott", *SETTINGS, "--json")
+    text = frb("compare", "jeffcott", *SETTINGS).out
     found = json.loads(said.out)
     assert list(found) == ["command", "case", "test", "results"]
     assert [found[key] for key in ("command", "case", "test")] == ["compare", "jeffcott", "runup"]
@@ -197,12 +197,58 @@ def test_command_says_one_json_document_one_table_one_picture(
     assert Path("jeffcott-compare.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_a_variant_that_ends_early_is_exit_3(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_variant_that_ends_early_is_exit_3(frb: Frb) -> None:
     words = ["--theory", "short", "--cavitation", f"{HALF},{FULL}", "--no-picture", "--json"]
-    assert frb(["compare", "jeffcott", *SETTINGS, *words, "--set", "contact.eccentricity=0.75"]) == 3
-    said = capsys.readouterr()
+    said = frb("compare", "jeffcott", *SETTINGS, *words, "--set", "contact.eccentricity=0.75", code=3)
     words.remove("--json")
-    assert frb(["compare", "jeffcott", *SETTINGS, *words, "--set", "contact.eccentricity=0.75"]) == 3
-    text = capsys.readouterr().out
+    text = frb("compare", "jeffcott", *SETTINGS, *words, "--set", "contact.eccentricity=0.75", code=3).out
     assert [result["status"] for result in json.loads(said.out)["results"]] == ["finished", "contact"]
     assert "sommerfeld short: contact at" in text
+
+
+BRIEF = ("speed.from=20 Hz", "speed.to=120 Hz", "film.theory=short", "output.step=2e-4 s")
+LAWS = ("half-sommerfeld", "sommerfeld")
+
+
+def tasks(folder: Path, duration: str) -> list[RunTask]:
+    settings = (*BRIEF, f"speed.duration={duration}")
+    cases = [load_case("jeffcott", (*settings, f"film.cavitation={law}")) for law in LAWS]
+    numbered = enumerate(cases, start=1)
+    return [RunTask(number, "runup", case, folder / f"{number}.h5", False) for number, case in numbered]
+
+
+def untold(number: int, progress: Progress) -> None:
+    """Nobody listens."""
+
+
+def test_runs_beside_each_other_are_those_one_after_the_other(tmp_path: Path) -> None:
+    for name in ("alone", "beside"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "beside" / "2.h5").write_text("not a run")  # in the way of the second one
+    alone = dict(in_turn(tasks(tmp_path / "alone", "0.2 s"), untold))
+    beside = dict(side_by_side(tasks(tmp_path / "beside", "0.2 s"), untold))
+    first, second = alone[1], beside[1]
+    assert isinstance(first, Run)
+    assert isinstance(second, Run)
+    assert list(first.signals) == list(second.signals)
+    for signal_name in first.signals:
+        np.testing.assert_array_equal(first[signal_name], second[signal_name])
+    with pytest.raises(InputError) as expected:
+        check_output(tmp_path / "beside" / "2.h5")
+    assert isinstance(beside[2], InputError)
+    assert beside[2].faults == expected.value.faults
+
+
+def test_ctrl_c_ends_all_runs_under_way_as_it_does_one(tmp_path: Path) -> None:
+    numbers: set[int] = set()
+
+    def report(number: int, progress: Progress) -> None:
+        numbers.add(number)
+        assert progress.end_s == 400.0
+        if numbers == {1, 2}:
+            signal.raise_signal(signal.SIGINT)
+
+    ended = dict(side_by_side(tasks(tmp_path, "400 s"), report))
+    statuses = {number: run.status for number, run in ended.items() if isinstance(run, Run)}
+    assert statuses == {1: "interrupted", 2: "interrupted"}
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["1.h5", "2.h5"]

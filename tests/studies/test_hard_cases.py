@@ -1,18 +1,17 @@
 """The hard cases: the quick ones here, all of them as a benchmark; and what a case that goes wrong looks like."""
 
-import json
 import os
 import time
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from commands import Frb
 from studies.hard_runs.cases import Reference, hard_case_result, references, run_hard_cases
 from studies.hard_runs.worker import DIED, HUNG, Worker
 
 from frbcli.case.reading.load import load_case_text
 from frbcli.case.reading.shipped import HardCase, hard_cases
-from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
 
 ALL = hard_cases()
@@ -82,19 +81,17 @@ def test_a_worker_that_hangs_or_dies_begins_anew() -> None:
 # --- on the command line ---
 
 
-def test_the_command_lists_and_shows_them(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    assert frb(["cases", "--hard", "--json"]) == 0
-    listed = json.loads(capsys.readouterr().out)["hard"]
+def test_the_command_lists_and_shows_them(frb: Frb, tmp_path: Path) -> None:
+    listed = frb("cases", "--hard", "--json").document["hard"]
     assert [entry["name"] for entry in listed] == [hard.name for hard in ALL]
     assert listed[0]["command"].startswith("frb rotation bearing-axial-groove --set ")
 
     copy = tmp_path / "copy.toml"
-    assert frb(["cases", "--hard", "no-speed", "-o", str(copy), "--quiet"]) == 0
+    frb("cases", "--hard", "no-speed", "-o", str(copy), "--quiet")
     assert load_case_text(copy.read_text(encoding="utf-8")).speed.end == 0.0
 
 
-def test_names_that_there_are_not_are_wrong_input(capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["cases", "--hard", "no-sped"]) == 2
-    assert 'Did you mean "no-speed"?' in capsys.readouterr().err
+def test_names_that_there_are_not_are_wrong_input(frb: Frb) -> None:
+    assert 'Did you mean "no-speed"?' in frb("cases", "--hard", "no-sped", code=2).err
     with pytest.raises(InputError):
         hard_cases(["no-speed", "nothing"])

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from commands import Frb
 from marches import rigid_shaft
 from numba import typeof
 
 import frbcli
-from frbcli.cli.main import run
 from frbcli.runs.inputs import RunInputs
 from frbcli.runs.start import control_of, rotor_data
 from frbcli.scene.machine.system import make_segments
@@ -146,6 +146,5 @@ def test_a_moment_without_a_solution_has_compiled_what_it_needs(monkeypatch: pyt
     assert _compile(short).functions == 0
 
 
-def test_what_is_no_case_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["warm-up", "nothing"]) == 2
-    assert "neither a file nor a shipped case" in capsys.readouterr().err
+def test_what_is_no_case_is_refused(frb: Frb) -> None:
+    assert "neither a file nor a shipped case" in frb("warm-up", "nothing", code=2).err

@@ -1,24 +1,46 @@
-"""Steady heat: the balance of films, rings and walls, its limits, and machines that are warm."""
+"""Steady heat: the balance of films, rings and walls, its limits, and machines that are warm. Kernels of the balance of
+heat against their plain forms."""
 
-import json
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import Frb
 from printed_sheets import printed
 
 from frbcli.bearing_tests.kinematic import rotation
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
-from frbcli.cli.main import run as frb
 from frbcli.equilibrium.static_machine import warm_machine
 from frbcli.errors import NotConverged
 from frbcli.linear.stability import stability
 from frbcli.materials import OILS
-from frbcli.scene.machine.heat import warm_case, warm_system
+from frbcli.scene.machine.heat import heat_of, warm_case, warm_system
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
+from frbcli.thermal.exchange import (
+    BOOKS,
+    CARRIED,
+    CHANGES,
+    CLEARANCE,
+    DISSIPATED,
+    ETA,
+    FILM_ROWS,
+    FLOW,
+    GIVEN,
+    IN_FILMS,
+    LENGTH,
+    POWER,
+    SHARE,
+    HeatArrays,
+    arrays_of,
+    heat_step,
+    viscosity_at,
+    write_clearances,
+    write_rates,
+)
+from frbcli.thermal.model import HeatModel, clearances_at, rates, viscosities_at
 
 ZERO = 273.15
 RING = """
@@ -143,14 +165,13 @@ def test_flow_of_a_concentric_film_is_the_formula_with_a_groove() -> None:
         assert one.flow == pytest.approx(other.flow, rel=1e-4)
 
 
-def test_check_and_stability_tell_the_same_heat(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_and_stability_tell_the_same_heat(tmp_path: Path, frb: Frb) -> None:
     file = tmp_path / "ring.toml"
     file.write_text(RING)
     arguments = ["stability", str(file), "--set", CONCENTRIC, "--no-picture", "--json"]
-    assert frb([*arguments, "--speed", "900 Hz", "--speed", "300 Hz"]) == 0
-    fast, slow = (point["thermal"] for point in json.loads(capsys.readouterr().out)["points"])
-    assert frb(["check", str(file), "--set", CONCENTRIC, "--json"]) == 0
-    checked = json.loads(capsys.readouterr().out)["thermal"]
+    said = frb(*arguments, "--speed", "900 Hz", "--speed", "300 Hz")
+    fast, slow = (point["thermal"] for point in said.document["points"])
+    checked = frb("check", str(file), "--set", CONCENTRIC, "--json").document["thermal"]
     assert checked["films"][0]["temperature_K"] == pytest.approx(153.8 + ZERO, abs=0.1)
     assert slow["films"][0]["temperature_K"] == pytest.approx(103.2 + ZERO, abs=0.1)
     assert fast["rings"][0]["speed_ratio"] == pytest.approx(checked["rings"][0]["speed_ratio"], abs=1e-6)
@@ -159,13 +180,11 @@ def test_check_and_stability_tell_the_same_heat(tmp_path: Path, capsys: pytest.C
     assert checked["balance_relative"] < 1e-6
 
 
-def test_heat_is_told_in_words(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_heat_is_told_in_words(tmp_path: Path, frb: Frb) -> None:
     file = tmp_path / "ring.toml"
     file.write_text(RING)
-    assert frb(["check", str(file), "--json"]) == 0  # compiles what is not on disk
-    capsys.readouterr()
-    assert frb(["check", str(file)]) == 0
-    told = capsys.readouterr().out
+    frb("check", str(file), "--json")  # compiles what is not on disk
+    told = frb("check", str(file)).out
     assert "heat at the top speed" in told
     assert "W leave with the oil" in told
 
@@ -230,21 +249,21 @@ def test_rotation_has_the_film_whose_heat_balances(cavitation: str) -> None:
     assert result.loads.force == pytest.approx(same.loads.force, rel=1e-5)
 
 
-def test_rotation_under_a_load_with_heat_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+def test_rotation_under_a_load_with_heat_is_told(frb: Frb) -> None:
     """More load makes the film thinner and its oil hotter."""
     found = []
     for load in (100, 400):
         motion = f"motion={{load='{load} N', speed='50 Hz'}}"
         sets = [word for setting in [*WARM_ROTATION[:3], *WARM_ROTATION[4:], motion] for word in ("--set", setting)]
-        assert frb(["rotation", "bearing", *sets, "--cavitation", "half-sommerfeld", "--no-picture", "--json"]) == 0
-        (result,) = json.loads(capsys.readouterr().out)["results"]
+        said = frb("rotation", "bearing", *sets, "--cavitation", "half-sommerfeld", "--no-picture", "--json")
+        (result,) = said.document["results"]
         assert result["force_N"] == pytest.approx([0.0, load], abs=1e-3 * load)
         (film,) = result["thermal"]["films"]
         found.append((film["power_W"], film["flow_m3_s"], film["temperature_K"]))
     assert found[1][0] > found[0][0] * 0.9
     assert found[1][1] > found[0][1]  # an eccentric film loses more oil
-    assert frb(["rotation", "bearing", *sets, "--cavitation", "half-sommerfeld", "--no-picture"]) == 0
-    assert "the film when it is warm" in capsys.readouterr().out
+    said = frb("rotation", "bearing", *sets, "--cavitation", "half-sommerfeld", "--no-picture")
+    assert "the film when it is warm" in said.out
 
 
 def test_a_bearing_may_have_walls_and_supply_of_its_own() -> None:
@@ -331,3 +350,89 @@ def test_scaled_film_is_the_film_of_that_viscosity_and_clearance(settings: list[
 def test_heat_that_does_not_balance_is_told(settings: list[str], words: str) -> None:
     with pytest.raises(NotConverged, match=words):
         warm_machine(ring_case(*settings), 900.0)
+
+
+def step_of(model: HeatModel, now: np.ndarray, step: float, t: np.ndarray, last: np.ndarray, books: np.ndarray) -> None:
+    """heat_step as runs have it: the temperatures of the films go on as in the last step."""
+    ratio = step / last[LENGTH] if last[LENGTH] > 0.0 else 0.0
+    ahead = t + ratio * last[CHANGES:]
+    heat_step(kernel_arrays(model), now, step, t, ahead, last, np.zeros(len(t)), books)
+
+
+def kernel_arrays(model: HeatModel) -> HeatArrays:
+    return arrays_of(model, np.ones(2), np.ones(2), np.ones(2), by_formula=False)
+
+
+def test_kernels_of_the_balance_are_their_plain_forms() -> None:
+    case = ring_case("thermal.clearance=follows", "thermal.centrifugal_growth=follows", "thermal.housing=60 degC",
+                     "thermal.shaft={ capacity = 40, conductance = 2, temperature = '200 degC' }")  # fmt: skip
+    heat = heat_of(case)
+    model = heat.model._replace(inlet=np.array([1, -1]))
+    rng = np.random.default_rng(4)
+    t = heat.start + 60.0 * rng.random(len(heat.start))
+    power, flow, speeds = np.array([300.0, 80.0]), np.array([8e-7, 2e-6]), np.array([4000.0, 800.0])
+    now, gain, state = np.zeros((FILM_ROWS, 2)), np.empty(len(t)), np.concatenate([np.zeros(BOOKS), speeds, t])
+    now[POWER], now[FLOW] = power, flow
+    capacity, links, films, numbers, growth = kernel_arrays(model)
+    write_clearances(films, growth, len(speeds), state, now)
+    clearances = now[CLEARANCE]
+    assert clearances == pytest.approx(clearances_at(model, t, speeds), rel=1e-12)
+    carried, given = write_rates(capacity, links, films, numbers, now, t, gain)
+    assert gain == pytest.approx(rates(model, t, power, flow, clearances), rel=1e-9, abs=1e-9)
+    assert float(gain.sum()) == pytest.approx(380.0 - carried, rel=1e-9)
+    assert given == pytest.approx(float(gain[np.isinf(model.capacity)].sum()), rel=1e-12)
+    assert [viscosity_at(numbers, x) for x in t[:2]] == pytest.approx(viscosities_at(model, t), rel=1e-12)
+
+
+def test_step_of_heat_is_that_of_the_rates_and_loses_nothing() -> None:
+    heat = heat_of(ring_case("thermal.housing=60 degC"))
+    model, count = heat.model, len(heat.start)
+    now = np.zeros((FILM_ROWS, 2))
+    now[POWER], now[FLOW], now[CLEARANCE], now[SHARE] = (300.0, 80.0), (8e-7, 2e-6), model.reference, 1.0
+    t, last, books = heat.start.copy(), np.zeros(CHANGES + count), np.zeros(BOOKS)
+    step = 1e-7
+    step_of(model, now, step, t, last, books)
+    expected = step * rates(model, heat.start, now[POWER], now[FLOW], now[CLEARANCE]) / model.capacity
+    assert t - heat.start == pytest.approx(expected, rel=1e-6, abs=1e-12)
+    for _ in range(200):
+        step_of(model, now, 1e-2, t, last, books)  # longer than the films' time constants
+    free = np.isfinite(model.capacity)
+    kept = float(model.capacity[free] @ (t - heat.start)[free])
+    assert books[DISSIPATED] == pytest.approx(380.0 * (2.0 + step), rel=1e-12)
+    assert books[DISSIPATED] == pytest.approx(books[CARRIED] + books[GIVEN] + kept, rel=1e-10)
+
+
+def test_a_long_step_of_heat_ends_in_balance_and_loses_nothing() -> None:
+    """Steps a thousand times as long as nodes of little capacity take."""
+    node = "{ capacity = 1e-15, conductance = 2, temperature = 330 }"
+    heat = heat_of(ring_case(f"thermal.shaft={node}", f"thermal.housing={node}"))
+    model, count = heat.model._replace(inlet=np.array([1, -1])), len(heat.start)
+    now = np.zeros((FILM_ROWS, 2))
+    now[POWER], now[FLOW], now[CLEARANCE], now[SHARE] = (300.0, 80.0), (8e-7, 2e-6), model.reference, 1.0
+    t, last, books = heat.start.copy(), np.zeros(CHANGES + count), np.zeros(BOOKS)
+    for _ in range(30):
+        step_of(model, now, 10.0, t, last, books)
+    free = np.isfinite(model.capacity)
+    assert rates(model, t, now[POWER], now[FLOW], now[CLEARANCE])[free] == pytest.approx(0.0, abs=1e-9 * 380.0)
+    kept = float(model.capacity[free] @ (t - heat.start)[free])
+    assert books[DISSIPATED] == pytest.approx(books[CARRIED] + books[GIVEN] + kept, rel=1e-10)
+
+
+def test_films_in_balance_gain_nothing() -> None:
+    """Power proportional to the viscosity, flow to its inverse; the inner film is fed through the outer one."""
+    heat = heat_of(ring_case("thermal.housing=60 degC", "thermal.films=quasi-steady"))
+    model = heat.model._replace(inlet=np.array([1, -1]))
+    assert model.balanced
+    now = np.zeros((FILM_ROWS, 2))
+    now[POWER], now[FLOW], now[CLEARANCE], now[SHARE] = (300.0, 80.0), (8e-7, 2e-6), model.reference, 1.0
+    now[ETA] = viscosities_at(model, heat.start)
+    t, last, books = heat.start.copy(), np.zeros(CHANGES + len(heat.start)), np.zeros(BOOKS)
+    step_of(model, now, 1e-12, t, last, books)
+    thicker = viscosities_at(model, t) / now[ETA]
+    handed_on = now[FLOW] / (1.0, thicker[1])  # what the inner film has let out
+    for film, flow in ((0, now[FLOW] / thicker), (1, handed_on)):
+        left = rates(model, t, now[POWER] * thicker, flow, now[CLEARANCE])
+        assert left[film] == pytest.approx(0.0, abs=1e-6)
+    assert t[0] > heat.start[0] + 5.0
+    assert t[2:] == pytest.approx(heat.start[2:], abs=1e-6)
+    assert books[IN_FILMS] == 0.0

@@ -1,18 +1,17 @@
 """Heat in runs: its balance, where a run settles, what films on cells and clearances make of it, and how it is told."""
 
-import json
 import math
 import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from commands import Frb
 from resumed import assert_resumable
 from test_heat import RING, ring_case, single
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
-from frbcli.cli.main import run as frb
 from frbcli.equilibrium.static_machine import warm_machine
 from frbcli.errors import NotConverged
 from frbcli.materials import OILS
@@ -254,16 +253,14 @@ def test_without_heat_a_run_tells_none(tmp_path: Path) -> None:
 
 
 # --- how it ends, and how it is told ---------------------------------------------------------------------------------
-def test_a_film_that_boils_ends_the_run_with_its_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_film_that_boils_ends_the_run_with_its_name(tmp_path: Path, frb: Frb) -> None:
     file = tmp_path / "ring.toml"
     file.write_text(RING)
     settings = ["--set", "thermal.hottest_film=90 degC", "--set", "speed.duration=0.5 s", "--no-picture"]
-    assert frb(["runup", str(file), *settings, "-o", str(tmp_path / "run.h5"), "--json"]) == 3
-    document = json.loads(capsys.readouterr().out)
+    document = frb("runup", str(file), *settings, "-o", str(tmp_path / "run.h5"), "--json", code=3).document
     assert document["status"] == "overheated"
     assert 0.0 < document["t_end_s"] < 0.5
-    assert frb(["runup", str(file), *settings, "-o", str(tmp_path / "run.h5")]) == 3
-    told = " ".join("".join(capsys.readouterr()).split())
+    told = " ".join("".join(frb("runup", str(file), *settings, "-o", str(tmp_path / "run.h5"), code=3)).split())
     assert "film inner became too hot (90 degC, thermal.hottest_film)" in told
 
 
@@ -275,17 +272,15 @@ def test_a_gap_that_heat_closes_before_the_start_is_told(tmp_path: Path) -> None
         runup(case, tmp_path / "run.h5")
 
 
-def test_heat_of_a_run_is_printed_and_drawn(ring_run: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_heat_of_a_run_is_printed_and_drawn(ring_run: Run, tmp_path: Path, frb: Frb) -> None:
     assert len(quantity_figure([ring_run], "heat").axes) == 4
     assert len(quantity_figure([ring_run, ring_run], "heat", over="speed").axes) == 4
-    assert frb(["plot", str(ring_run.path), "--what", "heat", "-o", str(tmp_path / "heat.png")]) == 0
+    frb("plot", str(ring_run.path), "--what", "heat", "-o", str(tmp_path / "heat.png"))
     assert (tmp_path / "heat.png").stat().st_size > 10_000
-    capsys.readouterr()
     file = tmp_path / "ring.toml"
     file.write_text(RING)
     short = ["--set", "speed.duration=0.02 s", "--no-picture"]
-    assert frb(["runup", str(file), *short, "-o", str(tmp_path / "r.h5")]) == 0
-    told = " ".join(capsys.readouterr().out.split())
+    told = " ".join(frb("runup", str(file), *short, "-o", str(tmp_path / "r.h5")).out.split())
     assert "J with the oil" in told
     assert "unaccounted for" in told
 
@@ -307,18 +302,16 @@ def test_comparison_with_and_without_heat(tmp_path: Path) -> None:
     assert with_heat.ring_ratios["ring_speed_Hz"] < without.ring_ratios["ring_speed_Hz"]
 
 
-def test_comparison_with_heat_is_a_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_comparison_with_heat_is_a_table(tmp_path: Path, frb: Frb) -> None:
     file = tmp_path / "ring.toml"
     file.write_text(RING)
     short = ["--set", "speed.duration=0.05 s", "--set", "speed.to=100 Hz", "--no-picture"]
-    assert frb(["compare", str(file), "--thermal", "none,lumped", *short]) == 0
-    out = capsys.readouterr().out
+    out = frb("compare", str(file), "--thermal", "none,lumped", *short).out
     assert re.search(r"ring over *\n.* rotor ", out)  # a head may take two lines
     assert re.search(r"with heat +0\.\d+ ", out)
-    assert frb(["compare", str(file), "--thermal", "warm", *short]) == 2
+    frb("compare", str(file), "--thermal", "warm", *short, code=2)
 
 
-def test_shipped_case_without_heat_says_what_is_missing(capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["compare", "jeffcott", "--thermal", "none,lumped"]) == 2
-    assert "thermal.supply_temperature" in capsys.readouterr().err
+def test_shipped_case_without_heat_says_what_is_missing(frb: Frb) -> None:
+    assert "thermal.supply_temperature" in frb("compare", "jeffcott", "--thermal", "none,lumped", code=2).err
     assert load_case("jeffcott").heat is None

@@ -28,11 +28,9 @@ from frbcli.cli.options import (
 )
 from frbcli.cli.progress import OutputOptions, computing, display, outputs_options
 from frbcli.cli.studies.static_tables import LITRES_PER_MINUTE, film_document, show_film, show_machine
-from frbcli.errors import INTERRUPTED, NotConverged
+from frbcli.errors import INTERRUPTED, NotConverged, did_you_mean
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     import pandas as pd
 
     from frbcli.bearing_tests.kinematic import KinematicResult, KinematicTest
@@ -120,7 +118,6 @@ def _check_options(over: str, speeds: tuple[float, ...], load: float | None, ros
 
 
 def _check_film(case: Case, film: str | None) -> None:
-    from frbcli.errors import did_you_mean
     from frbcli.scene.films import bearing_films
 
     names = [place.name for place in bearing_films(case)]

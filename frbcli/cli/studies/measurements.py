@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
     from frbcli.balancing import Balancing, TrialRun
     from frbcli.case.schema import Case
-    from frbcli.cli.common import Terminal
     from frbcli.results.store import Run
     from frbcli.studies.fit import Fit
 

@@ -24,8 +24,8 @@ from frbcli.cli.studies.static_tables import (
     show_points,
     show_reduction,
 )
-from frbcli.columns import document, documents, table_of
-from frbcli.units import PER_MINUTE, SpeedUnit
+from frbcli.columns import document, documents, keys, table_of
+from frbcli.units import PER_MINUTE, SpeedUnit, display
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -202,7 +202,6 @@ def _character(kind: ThresholdKind, unit: SpeedUnit) -> str:
 
 def _point(point: StabilityPoint) -> dict[str, Any]:
     """One point in JSON; a rotor with several films lists them, the first of them at the top as well."""
-    from frbcli.columns import document, documents, keys
     from frbcli.linear.columns import AXIAL, FILM, MODES, POINT, film_columns
 
     row, films = document(POINT, point), documents(film_columns(point.films), point.films)
@@ -263,8 +262,6 @@ def show_free(terminal: Terminal, modes: Modes) -> None:
 
 def show_held(terminal: Terminal, modes: Modes) -> None:
     """A table of the modes over the speed."""
-    from frbcli.units import display
-
     springs = ", ".join(display(spring, "N/m") for spring in dict.fromkeys(modes.stiffness_N_m))
     every = -(-len(modes.points) // LONGEST_TABLE)
     rows = [

@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from frbcli.columns import heads, table_of
+from frbcli.columns import document, documents, heads, table_of
 from frbcli.linear.columns import AXIAL, FILM, MODES, STABILITY
 
 if TYPE_CHECKING:
@@ -136,7 +136,6 @@ def show_largest_error(terminal: Terminal, errors: Iterable[tuple[float, float]]
 
 def heat_document(warm: WarmMachine) -> dict[str, object]:
     """Temperatures, viscosities, losses and flows, of one bearing each, and the balance of heat."""
-    from frbcli.columns import document, documents
     from frbcli.equilibrium.linearised import HEAT_BALANCE, WARM_FILMS, WARM_RINGS
 
     films, rings = documents(WARM_FILMS, warm.films), documents(WARM_RINGS, warm.rings)
@@ -145,7 +144,6 @@ def heat_document(warm: WarmMachine) -> dict[str, object]:
 
 def show_heat(terminal: Terminal, case: Case, warm: WarmMachine, title: str) -> None:
     """The films and rings of a warm machine, and where its heat goes."""
-    from frbcli.columns import table_of
     from frbcli.equilibrium.linearised import WARM_RINGS
 
     _show_films(terminal, warm.films, title, "bearing" if _bearings(case) > 1 else "machine")
@@ -221,7 +219,6 @@ def machine_document(terminal: Terminal, case: Case, speed_Hz: float) -> dict[st
 
 def film_document(steady: SteadyHeat) -> dict[str, object]:
     """The heat of a single film, of a bearing test."""
-    from frbcli.columns import document, documents
     from frbcli.equilibrium.linearised import HEAT_BALANCE, WARM_FILMS
     from frbcli.equilibrium.static_machine import film_temperatures
 
@@ -237,7 +234,6 @@ def show_film(terminal: Terminal, steady: SteadyHeat, title: str) -> None:
 
 
 def _show_films(terminal: Terminal, films: Sequence[FilmTemperature], title: str, whole: str = "") -> None:
-    from frbcli.columns import table_of
     from frbcli.equilibrium.linearised import WARM_FILMS
 
     table = table_of(WARM_FILMS, films)

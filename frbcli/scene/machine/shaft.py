@@ -17,7 +17,7 @@ from frbcli.arrays import Array
 from frbcli.case.rotor import JeffcottRotor, RigidRotor, unbalance_sizes, with_loss
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
-from frbcli.rotor.assembly import Body, LinearRotor, jeffcott_rotor, point_mass
+from frbcli.rotor.assembly import Body, LinearRotor, assembled, jeffcott_rotor, point_mass
 from frbcli.units import ANGLE, display
 
 if TYPE_CHECKING:
@@ -156,7 +156,6 @@ class Shaft(ABC):
 
     def free_modes(self) -> FreeModes:
         """All its modes without bearings, of one plane. Raises InputError if it has none."""
-        from frbcli.rotor.assembly import assembled
         from frbcli.rotor.reduction import modes_of_plane
 
         machine = assembled([self.undamped_body()])

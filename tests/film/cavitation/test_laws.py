@@ -1,16 +1,15 @@
 """Every cavitation law in its unknown w: what it must be a solution of, its slopes, limits and films; the formulas of
 Bayada and Chupin; and theta(p), which the picture shows."""
 
-import json
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from commands import Frb
 
 import frbcli
 from frbcli.case.reading.load import load_case
-from frbcli.cli.main import run
 from frbcli.film.cavitation.barotropic import Barotropic, vapour_fraction
 from frbcli.film.cavitation.conditions import Elrod, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import FilmOil, Law, Scales
@@ -271,11 +270,8 @@ def test_laws_that_this_oil_cannot_have_are_left_out() -> None:
     assert any("Peeken" in label for label in labels)
 
 
-def test_command_draws_a_case(
-    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_command_draws_a_case(frb: Frb, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    assert run(["plot", "bearing", "--what", "law", "--set", "film.cavitation=elrod", "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
+    found = frb("plot", "bearing", "--what", "law", "--set", "film.cavitation=elrod", "--json").document
     assert found == {"command": "plot", "case": "bearing", "output": "bearing-law.png", "what": "law"}
     assert (tmp_path / "bearing-law.png").stat().st_size > 10_000

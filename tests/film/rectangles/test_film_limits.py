@@ -1,5 +1,7 @@
-"""Films against closed forms and published tables: short, infinitely long and finite bearings; and what every film
-must do, whatever the motion: symmetries, scaling, dissipation, derivatives."""
+"""Films against closed forms and published tables: short, infinitely long and finite bearings; and what every film must
+do, whatever the motion: symmetries, scaling, dissipation, derivatives. Largest pressures of half-Sommerfeld films
+against an independent, grid-refined program. Their forces are those of it to 0.3 %, see
+tests/docs/test_validation.py."""
 
 import math
 from dataclasses import replace
@@ -23,16 +25,19 @@ from films import (
 )
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from paths import rows_of
 from printed_sheets import printed
+from volume_films import motion_of
 
 from frbcli.film.gap import Section
 from frbcli.film.grid import Mesh, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.rectangles import short
-from frbcli.film.rectangles.film import direct_force, evaluate, make_film
+from frbcli.film.rectangles.film import direct_force, evaluate, largest_pressure, make_film
 from frbcli.film.rectangles.film_force import solve_plain
 from frbcli.film.rectangles.modal import unit_fields
 from frbcli.film.rectangles.short import short_closed, short_general, short_pressure
 from frbcli.film.rectangles.table import ring_contraction
+from frbcli.scene.planning.film_choice import DEFAULT_MESH
 
 OMEGA = 300.0
 REST = np.zeros(2)
@@ -364,3 +369,25 @@ def test_derivatives_at_the_centre(kind: str) -> None:
     expected = 50.0 * damping[0, 0] * np.array([[0.0, -1.0], [1.0, 0.0]])
     np.testing.assert_allclose(found.by_displacement, expected, atol=1e-4 * 50.0 * damping[0, 0])
     np.testing.assert_allclose(found.force, 0.0, atol=1e-6)
+
+
+PRESSURE_ERROR = 1e-2
+
+
+def name_of(row: dict[str, str]) -> str:
+    keys = ("supply", "supply_pressure_bar", "speed_Hz", "eccentricity_rate_1_s", "whirl_speed_rad_s", "eccentricity")
+    return "-".join(row[key] for key in keys)
+
+
+def bearing_of(row: dict[str, str]) -> Section:
+    if row["supply"] == "none":
+        return PLAIN
+    return replace(GROOVED, far_pressure=1e5 * float(row["supply_pressure_bar"]) - GROOVED.ambient_pressure)
+
+
+@pytest.mark.parametrize("row", rows_of("film-forces.csv"), ids=name_of)
+def test_largest_pressure(row: dict[str, str]) -> None:
+    bearing, motion = bearing_of(row), motion_of(row)
+    at, rate = (bearing.clearance * np.array(vector) for vector in (motion.d, motion.v))
+    found = largest_pressure(bearing, DEFAULT_MESH, at, rate, motion.omega)
+    assert found == pytest.approx(float(row["p_max_Pa"]), rel=PRESSURE_ERROR)
