@@ -90,7 +90,7 @@ _DOUBTFUL = {  # names that the registry takes for what few people mean by them
     "gr": 'is a grain to some and a gram to others. Write "g".',
     **dict.fromkeys(("ton", "tons"), 'is 1000 kg to some and 907 kg or 1016 kg to others. Write "t" for 1000 kg.'),
 }
-_PEAK_TO_PEAK = re.compile(r"(\S+)\s+(?:pp|p-p|pk-pk|pkpk)")
+_PEAK_TO_PEAK = re.compile(r"(\S+?)\s*(?:pp|p-p|pk-pk|pkpk)")
 LONGEST_UNIT = 100  # characters; longer ones are not searched
 LONGEST_SHOWN = 40  # characters of a unit in a fault
 # A product of names with one-digit powers, perhaps over one in brackets: all that a case needs, and nothing that pint

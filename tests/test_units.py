@@ -24,6 +24,8 @@ from frbcli.units import ANGLE, NUMBER, SPEED, TEMPERATURE_DIFFERENCE, ValueFaul
         ("4 mil", "m", 101.6e-6),
         ("35 micron", "m", 35e-6),
         ("35 um pp", "m", 35e-6),
+        ("35 umpp", "m", 35e-6),
+        ("2 milpk-pk", "m", 50.8e-6),
         ("2 sec", "s", 2.0),
         ("150 krpm", SPEED, 2500.0),
         ("3 g-mm", "kg*m", 3e-6),

@@ -21,6 +21,7 @@ PROFILE: TypeAdapter[tuple[tuple[float, float], ...]] = TypeAdapter(Profile)
 TURN, SAME = 2.0 * math.pi, 1e-9  # rad; share of the clearance
 THICKEST_MACHINED = 0.05  # clearance of a lobe over the radius
 VISCOSITY_RANGE = (1e-6, 1e4)
+COLDEST = 200.0  # K, of an oil: a smaller number was meant in degrees Celsius
 LONGEST = 1e5  # width over the diameter
 
 
@@ -121,7 +122,10 @@ def law_breaches(oil: Mapping[str, Any], temperature: float | None, path: Path) 
     else:
         given = "points" if "points" in oil["viscosity"] else "grade"
         problem = f"makes the viscosity of the {given} {viscosity:.3g} Pa*s."
-        yield Breach(path, problem, "A grade has data from 40 to 150 degC, given points only near them.")
+        remedy = "A grade has data from 40 to 150 degC, given points only near them."
+        if temperature < COLDEST:
+            remedy = f'A number without a unit is in kelvin: write "{temperature:g} degC" for degrees Celsius.'
+        yield Breach(path, problem, remedy)
 
 
 def is_constant(oil: Mapping[str, Any]) -> bool:
