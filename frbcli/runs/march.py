@@ -266,7 +266,9 @@ class March:
         fresh = np.column_stack([self._q[kept], self._v[kept], speeds[kept], self._oil[kept], *changed])
         self._samples = np.concatenate([self._samples, fresh])
         signals = self._signals(samples, speeds) | self._heat.signals(rows)
-        if status == FINISHED and self._current + 1 < len(self._segments):
+        ahead = self._segments[self._current + 1 :]
+        # The last step of a segment may be the last one of the budget, too: what resumes there finds the next segment.
+        if ahead and (status == FINISHED or (status == RUNNING and self.time >= ahead[0].start)):
             status = self._change()
         if status == RUNNING and self._state.numbers[STEPS] > self._most_steps:
             status = STUCK

@@ -121,6 +121,13 @@ def test_a_run_that_was_put_down_goes_on_with_the_same_clearance(
     assert_resumable(load_case(name, [*course, *settings]), tmp_path, 0.02, 0.03, 0.04)
 
 
+@pytest.mark.parametrize("change", [step_to("45 um", "0.03 s"), 'rotor.loss={time="0.03 s",unbalance="20 g*mm"}'])
+def test_a_run_that_is_put_down_at_a_change_has_it(change: str, tmp_path: Path) -> None:
+    """After each step, so that one look at the clock is at the moment of the change."""
+    course = ["speed.duration=0.06s", "speed.from=20 Hz", "speed.to=21Hz", "output.step=0.1ms"]
+    assert_resumable(load_case("jeffcott", [*course, change]), tmp_path, 0.02, 0.03, 0.04, steps=1)
+
+
 @pytest.mark.nightly  # co-simulation beside the coupled loop: test_cosimulation
 def test_coupled_in_turn_is_coupled_at_once(tmp_path: Path) -> None:
     """The journal jumps in the wider gap of a co-simulation as it does when rotor and film are solved together."""
