@@ -124,7 +124,7 @@ def law_breaches(oil: Mapping[str, Any], temperature: float | None, path: Path) 
         problem = f"makes the viscosity of the {given} {viscosity:.3g} Pa*s."
         remedy = "A grade has data from 40 to 150 degC, given points only near them."
         if temperature < COLDEST:
-            remedy = f'A number without a unit is in kelvin: write "{temperature:g} degC" for degrees Celsius.'
+            remedy = 'A number without a unit is in kelvin: 60 degrees Celsius are "60 degC".'
         yield Breach(path, problem, remedy)
 
 
