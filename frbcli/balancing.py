@@ -358,7 +358,7 @@ def _check_angles(runs: Sequence[Run], triggered: bool) -> None:
     """Raises InputError for measurements without the angle of the rotor."""
     for run in runs:
         if run.command == MEASURED and not triggered and not marked(run):
-            problem = "does not hold the angle of the rotor, to which phases refer."
+            problem = "holds no angle of the rotor, to which phases refer: no tacho shows one pulse a revolution."
             remedy = "Give --tacho with one pulse per revolution, or --triggered if all files begin at the same angle."
             raise input_error("balance", "run", str(run.path), problem, remedy)
 

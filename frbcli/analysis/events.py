@@ -68,7 +68,8 @@ class Event:
     of a whirl in floating rings the film that drives it.
 
     frequency_Hz, frequency_ratio (to the rotor speed): of the motion, where it has one. point: whose motion it was
-    found in, "disk" or "journal", "disk_NAME" or "journal_NAME" where there are several; None where no motion shows it.
+    found in, or which disk has a loss, "disk" or "journal", "disk_NAME" or "journal_NAME" where there are several; None
+    where no motion shows it.
     amplitude: over the clearance (C_i + C_o of a floating ring, the length of a machine without films): of an onset and
     a self-excited vibration the largest one until it ends, of a critical speed the amplitude of the synchronous motion
     there; None of others.
@@ -101,8 +102,8 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
         Needs time_s and speed_Hz; per bearing journal_x_m, journal_y_m and, for contact, eccentricity (with several
         bearings journal_NAME_x_m, eccentricity_NAME) and the reference clearance_m, one for all or one per film. Uses
         ring_x_m, ring_speed_Hz and disk_x_m, disk_y_m where there are any, and the references clearance_step_1_s,
-        loss_1_s, critical_speed_1_Hz, forced_1_Hz, forced_2_order and so on. It may be of any length. Motion with a
-        frequency or order of what forces the run is neither whirl nor resonance.
+        loss_1_s or loss_1_NAME_s, critical_speed_1_Hz, forced_1_Hz, forced_2_order and so on. It may be of any length.
+        Motion with a frequency or order of what forces the run is neither whirl nor resonance.
 
     Returns
     -------
@@ -289,9 +290,9 @@ def _changes(run: RunLike) -> Iterator[Event]:
     begin, end = (signals.piece(run, "time_s", place, place + 1)[0] for place in (0, count - 1))
     kinds: tuple[tuple[Kind, str], ...] = (("clearance-step", CLEARANCE_STEP), ("loss", LOSS))
     for kind, change in kinds:
-        for t in signals.times_of(run, change):
+        for t, name in signals.times_of(run, change):
             if begin <= t <= end:
-                yield Event(kind, None, t, signals.speed_at(run, t), None, None)
+                yield Event(kind, None, t, signals.speed_at(run, t), None, None, joined("disk", name) if name else None)
 
 
 def _whirls_of_any_frequency(

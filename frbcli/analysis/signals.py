@@ -5,6 +5,7 @@ Times of measured samples: which rise, which are even but rounded, and signals a
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -208,9 +209,11 @@ def is_forced(name: str, kind: str) -> bool:
     return name.startswith(f"{FORCED}_") and name.endswith(f"_{kind}")
 
 
-def times_of(run: RunLike, change: str) -> list[float]:
-    """Times in s of sudden changes, CLEARANCE_STEP or LOSS, ascending; whether the run has reached them or not."""
-    return sorted(time for name, time in run.references.items() if name.startswith(f"{change}_"))
+def times_of(run: RunLike, change: str) -> list[tuple[float, str]]:
+    """Times in s of sudden changes, CLEARANCE_STEP or LOSS, ascending, each with the name of the part that changes, ""
+    of one alone; whether the run has reached them or not."""
+    found = ((re.fullmatch(rf"{change}_\d+_(?:(.+)_)?s", name), time) for name, time in run.references.items())
+    return sorted((time, name[1] or "") for name, time in found if name is not None)
 
 
 def bearing_clearance(run: RunLike, name: str = "") -> float | None:

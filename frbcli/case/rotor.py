@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 from pydantic import Field
 
 from frbcli.case.model import (
+    ONE_OR_MANY,
     Acceleration,
     Angle,
     Count,
@@ -39,6 +40,7 @@ from frbcli.case.model import (
     Speed,
     Stiffness,
     Unbalance,
+    repeated,
 )
 from frbcli.case.over_time import MachineTable
 from frbcli.case.reading.tables import Breach, Path
@@ -58,16 +60,18 @@ class Loss(Model):
     phase: Angle = Field(default=0.0, description="angle on the rotor")
 
 
-def with_loss(unbalance: float, phase: float, loss: Loss | None) -> tuple[float, float]:
-    """Size in kg m and angle on the rotor in rad of an unbalance with what a loss adds to it from the beginning."""
-    if loss is None or loss.time > 0.0:
-        return unbalance, phase
-    return cmath.polar(cmath.rect(unbalance, phase) + cmath.rect(loss.unbalance, loss.phase))
+Losses = Annotated[tuple[Loss, ...], repeated(1), ONE_OR_MANY]
+
+
+def with_losses(unbalance: float, phase: float, losses: Losses) -> tuple[float, float]:
+    """Size in kg m and angle on the rotor in rad of an unbalance with what losses add to it from the beginning."""
+    added = sum(cmath.rect(loss.unbalance, loss.phase) for loss in losses if loss.time == 0.0)
+    return cmath.polar(cmath.rect(unbalance, phase) + added) if added else (unbalance, phase)
 
 
 def unbalance_sizes(part: RigidRotor | JeffcottRotor | Disk) -> float:
-    """The unbalance of a rotor or a disk plus its loss, in phase, kg m."""
-    return part.unbalance + (0.0 if part.loss is None else part.loss.unbalance)
+    """The unbalance of a rotor or a disk plus its losses, in phase, kg m."""
+    return part.unbalance + sum(loss.unbalance for loss in part.losses)
 
 
 class RigidRotor(Model):
@@ -78,7 +82,7 @@ class RigidRotor(Model):
     kind: Literal["rigid"] = Field(description="one mass, no tilting (2.3)")
     mass: Mass = Field(description="of the rotor")
     unbalance: Unbalance = Field(default=0.0, description="mass times radius")
-    loss: Loss | None = Field(default=None, description="unbalance that joins later")
+    losses: Losses = Field(default=(), alias="loss", description="unbalances that join later")
     external_damping: Damping = Field(default=0.0, description="of rotor or disk to ground")
     polar_inertia: RotorInertia | None = Field(default=None, description="about the axis, for [drive]")
     gravity: Acceleration = Field(default=GRAVITY, description="along -y; 0: off")
@@ -94,7 +98,7 @@ class JeffcottRotor(Model):
     journal_mass: JournalMass = Field(description="of both journals together")
     shaft_stiffness: Stiffness = Field(description="between disk and journals")
     unbalance: Unbalance = Field(default=0.0, description="mass times radius")
-    loss: Loss | None = Field(default=None, description="unbalance that joins later")
+    losses: Losses = Field(default=(), alias="loss", description="unbalances that join later")
     bow: Offset = Field(default=0.0, description="of the unloaded disk off the line of the journals")
     bow_phase: Angle = Field(default=0.0, description="angle on the rotor; the unbalance is at 0")
     external_damping: Damping = Field(default=0.0, description="of rotor or disk to ground")
@@ -201,4 +205,4 @@ class Disk(Model):
     diametral_inertia: Inertia = Field(default=0.0, description="of the disk")
     unbalance: Unbalance = Field(default=0.0, description="mass times radius")
     phase: Angle = Field(default=0.0, description="angle on the rotor")
-    loss: Loss | None = Field(default=None, description="unbalance that joins later")
+    losses: Losses = Field(default=(), alias="loss", description="unbalances that join later")

@@ -5,6 +5,7 @@ Advice follows from the end of the run and from the case; settings that the case
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -41,7 +42,8 @@ FINER, SMALLER = 4.0, 0.7  # divisor of the target; error of the cells, if that 
 class RunEnd:
     """The end of a run: speed in Hz; film: the name of that with the largest eccentricity, which is given; step: the
     last one in s that was tried, None if not known; whirl: the latest onset in it, an event of the run, or None;
-    hot_film: the name of a film that became too hot; on_pads: whether a collar touched its pads."""
+    hot_film: the name of a film that became too hot; on_pads: whether a collar touched its pads; grown: the largest
+    displacement over the length of a machine without films, 0 with films."""
 
     status: str
     t_s: float
@@ -52,6 +54,7 @@ class RunEnd:
     whirl: dict[str, Any] | None
     hot_film: str = ""
     on_pads: bool = False
+    grown: float = 0.0
 
     @property
     def journal(self) -> str:
@@ -74,7 +77,15 @@ def run_end(run: Run) -> RunEnd:
         whirl=whirls[-1] if whirls and whirls[-1]["kind"] == "onset" else None,
         hot_film=hot_film(run),
         on_pads=any(event["kind"] == "contact" and event.get("point") == COLLAR for event in run.events),
+        grown=_grown(run),
     )
+
+
+def _grown(run: Run) -> float:
+    """The largest displacement in the last sample over the length of a machine without films, 0 with films."""
+    length = run.references.get("length_m")
+    last = (abs(float(run[name][-1])) for name in run.signals if name.endswith(("_x_m", "_y_m")) if len(run))
+    return 0.0 if not length else max(last, default=0.0) / length
 
 
 def run_advice(case: Case, end: RunEnd) -> tuple[str, ...]:
@@ -194,10 +205,12 @@ def _missing_oil(case: Case) -> tuple[str, ...]:
 def _stuck(case: Case, end: RunEnd) -> tuple[str, ...]:
     """Sentences on a run whose equations had no solution with the smallest step size, or without films had no bound."""
     speed = case.speed_unit.words(end.speed_Hz)
-    if not case.films:
+    if not case.films and end.grown > math.sqrt(UNBOUNDED):  # in the last sample, before the step that was beyond
         grown = f"The motion grew beyond {UNBOUNDED:.0e} times the length of the plan at {speed}"
         return (f"{grown}: given coefficients do not bound it. `frb stability` shows the speed from which one grows.",)
     step = f"{SMALLEST_STEP:.0e} s" if end.step_s is None or end.step_s < SMALLEST_STEP else f"{end.step_s:.1e} s"
+    if not case.films:
+        return (f"The rotor had no solution at {speed} with a step size below {step}.",)
     touching = end.eccentricity >= case.contact.eccentricity
     place = "in contact with the shell" if touching else "not in contact"
     sentence = (

@@ -12,6 +12,7 @@ from importlib.metadata import PackageNotFoundError, version
 import numpy as np
 
 from frbcli.analysis.forced import ForcedLine, forced_references, lines_of_table
+from frbcli.analysis.signals import joined
 from frbcli.arrays import Array
 from frbcli.case.bearing import SIDES
 from frbcli.case.schema import Case
@@ -23,7 +24,7 @@ from frbcli.rotor.assembly import PLANE
 from frbcli.rotor.loads import Harmonic, Tabulated
 from frbcli.runs.heat import heat_units
 from frbcli.runs.inputs import RunInputs, drive_units
-from frbcli.scene.changes import loss_times, step_times
+from frbcli.scene.changes import losses_in_time, step_times
 from frbcli.scene.machine.rotor import element_parts
 from frbcli.scene.machine.system import Segment, System
 from frbcli.solve.ring_spin import STIFFNESS
@@ -153,17 +154,17 @@ def header(
         references=({} if system.names else {"length_m": system.length})
         | ({"contact_eccentricity": case.contact.eccentricity, "clearance_m": system.length} if system.names else {})
         | {named("clearance_m", name): length for name, length in zip(system.names, system.clearances, strict=True)}
-        | _numbered(CLEARANCE_STEP, step_times(case))
-        | _numbered(LOSS, loss_times(case))
+        | _numbered(CLEARANCE_STEP, [(time, "") for time in step_times(case)])
+        | _numbered(LOSS, losses_in_time(case))
         | forced_references(forcing(case)[0])
         | ({} if critical_speeds is None else {CRITICAL_SPEEDS: float(len(critical_speeds))})
         | {f"{CRITICAL_SPEED}_{number}_Hz": speed for number, speed in enumerate(critical_speeds or (), start=1)},
     )
 
 
-def _numbered(name: str, times: Sequence[float]) -> dict[str, float]:
-    """References of sudden changes at times in s."""
-    return {f"{name}_{number}_s": time for number, time in enumerate(times, start=1)}
+def _numbered(change: str, times: Sequence[tuple[float, str]]) -> dict[str, float]:
+    """References of sudden changes at times in s, each with the name of the part that changes."""
+    return {joined(change, str(number), name, "s"): time for number, (time, name) in enumerate(times, start=1)}
 
 
 def forcing(case: Case) -> tuple[list[ForcedLine], list[str]]:

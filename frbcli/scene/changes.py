@@ -14,7 +14,7 @@ from typing import TypeVar
 from frbcli.case.film import FilmGeometry
 from frbcli.case.model import Model, altered
 from frbcli.case.reading.time_tables import inputs_of
-from frbcli.case.rotor import Loss
+from frbcli.case.rotor import Loss, Losses
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.scene.films import film_places
@@ -29,9 +29,14 @@ def step_times(case: Case) -> tuple[float, ...]:
     return tuple(sorted({step.time for film in case.films for step in film.clearance_steps}))
 
 
+def losses_in_time(case: Case) -> tuple[tuple[float, str], ...]:
+    """Times in s at which an unbalance joins the others during a run, ascending, each with the name of its disk."""
+    return tuple(sorted({(loss.time, name) for name, loss in _losses(case) if loss.time > 0.0}))
+
+
 def loss_times(case: Case) -> tuple[float, ...]:
     """Times in s at which an unbalance joins the others during a run, ascending."""
-    return tuple(sorted({loss.time for _, loss in _losses(case) if loss.time > 0.0}))
+    return tuple(dict.fromkeys(time for time, _ in losses_in_time(case)))
 
 
 def change_times(case: Case) -> tuple[float, ...]:
@@ -48,8 +53,8 @@ def after_losses(case: Case, time: float = math.inf) -> Case:
     """The case with the unbalance of all losses until a time in s."""
     if not any(begin <= time for begin in loss_times(case)):
         return case
-    disks = tuple(_lost(disk, disk.loss, time) for disk in case.disks)
-    rotor = _lost(case.rotor, getattr(case.rotor, "loss", None), time)
+    disks = tuple(_lost(disk, disk.losses, time) for disk in case.disks)
+    rotor = _lost(case.rotor, getattr(case.rotor, "losses", ()), time)
     return altered(case, {"given_rotor": rotor, "disks": disks})
 
 
@@ -86,14 +91,17 @@ def clearance_decisions(case: Case) -> Iterator[tuple[str, str, str]]:
 
 def _losses(case: Case) -> Iterator[tuple[str, Loss]]:
     """The losses of a case, each with the name of its disk, "" of a symmetric rotor."""
-    own = getattr(case.given_rotor, "loss", None)
-    named = [(disk.name or str(number), disk.loss) for number, disk in enumerate(case.disks, start=1)]
-    return ((name, loss) for name, loss in (("", own), *named) if loss is not None)
+    own: Losses = getattr(case.given_rotor, "losses", ())
+    named = [(disk.name or str(number), disk.losses) for number, disk in enumerate(case.disks, start=1)]
+    return ((name, loss) for name, losses in (("", own), *named) for loss in losses)
 
 
-def _lost(part: Unbalanced, loss: Loss | None, time: float) -> Unbalanced:
-    """A rotor or a disk with its loss from the beginning on if that comes until a time in s."""
-    return part if loss is None or loss.time > time else altered(part, {"loss": altered(loss, {"time": 0.0})})
+def _lost(part: Unbalanced, losses: Losses, time: float) -> Unbalanced:
+    """A rotor or a disk with its losses until a time in s from the beginning on."""
+    if not any(loss.time <= time for loss in losses):
+        return part
+    joined = tuple(altered(loss, {"time": 0.0}) if loss.time <= time else loss for loss in losses)
+    return altered(part, {"losses": joined})
 
 
 def _film_at(film: FilmGeometry, time: float) -> FilmGeometry:

@@ -132,8 +132,8 @@ def test_two_disks_of_a_shaft_lose_blades_one_after_the_other(tmp_path: Path) ->
         state = exact(rotor, omega, np.array([end]), begin, state)[0]
     moved = expected[:, : len(state) // 2] @ place.T
     assert np.abs(disk(run, "disk_turbine") - moved @ [1.0, 1j]).max() < 1e-5 * np.abs(moved).max()
-    losses_found = [event["t_s"] for event in run.events if event["kind"] == "loss"]
-    assert losses_found == [0.02, 0.035]
+    losses_found = [(event["t_s"], event["point"]) for event in run.events if event["kind"] == "loss"]
+    assert losses_found == [(0.02, "disk_turbine"), (0.035, "disk_compressor")]
 
 
 def test_the_unbalance_after_the_loss_is_the_sum_of_both() -> None:
@@ -184,3 +184,21 @@ def test_the_shipped_turbine_comes_to_a_larger_orbit(tmp_path: Path) -> None:
     assert [event["kind"] for event in run.events] == ["loss"]
     assert sizes == pytest.approx(expected, rel=0.15)
     assert sizes[1] > 15.0 * sizes[0]
+
+
+def test_a_disk_loses_two_blades_one_after_the_other(tmp_path: Path) -> None:
+    """In any order, as with one alone until the second; each is an event. The steady motion has the sum."""
+    first, second = (
+        {"time": t, "unbalance": u, "phase": "0 rad"} for t, u in (("0.1 s", "3e-5 kg*m"), ("0.15 s", "4e-5 kg*m"))
+    )
+    both = frbcli.runup(jeffcott(100.0, 100.0, loss=[first, second]), tmp_path / "both.h5")
+    turned = frbcli.runup(jeffcott(100.0, 100.0, loss=[second, first]), tmp_path / "turned.h5")
+    alone = frbcli.runup(jeffcott(100.0, 100.0, loss=[first]), tmp_path / "first.h5")
+    late = both["time_s"] > 0.15
+    assert [(event["kind"], event["t_s"]) for event in both.events] == [("loss", 0.1), ("loss", 0.15)]
+    np.testing.assert_array_equal(disk(turned), disk(both))
+    np.testing.assert_allclose(disk(both)[~late], disk(alone)[~late], atol=1e-12)
+    assert np.abs(disk(both) - disk(alone))[late].max() > 0.1 * np.abs(disk(alone)).max()
+    steady = response(jeffcott(100.0, 100.0, loss=[first, second]), [100.0], after_loss=True)
+    one = response(jeffcott(100.0, 100.0), [100.0])
+    assert steady.motion == pytest.approx(one.motion * (U + 7e-5) / U, rel=1e-12)

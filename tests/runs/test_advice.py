@@ -55,6 +55,19 @@ def test_end_of_a_run_is_read_from_its_last_sample_its_events_and_its_state() ->
     assert (none.film, none.eccentricity, none.step_s) == ("", 0.0, None)
 
 
+def test_a_run_without_films_that_stuck_did_not_grow() -> None:
+    """Only a motion that is far beyond the machine is said to have grown."""
+    columns = {"time_s": np.arange(2.0), "speed_Hz": np.full(2, 90.0), "disk_x_m": np.array([0.0, -3e-4]),
+               "disk_y_m": np.zeros(2)}  # fmt: skip
+    stuck = as_run(columns, "not-converged")
+    stuck = replace(stuck, references={"length_m": 1e-4}, checkpoint={"numbers": np.full(20, 5e-13)})
+    case = load_case("seal")
+    assert run_end(stuck).grown == pytest.approx(3.0)
+    assert told(case, run_end(stuck)) == "The rotor had no solution at 90 Hz with a step size below 1e-12 s."
+    far = replace(stuck, references={"length_m": 1e-8})
+    assert "The motion grew beyond 1e+06 times the length" in told(case, run_end(far))
+
+
 # --- the eccentricity that the plan was made for ---
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.case.rotor import JeffcottRotor, RigidRotor, unbalance_sizes, with_loss
+from frbcli.case.rotor import JeffcottRotor, RigidRotor, unbalance_sizes, with_losses
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.rotor.assembly import Body, LinearRotor, assembled, jeffcott_rotor, point_mass
@@ -192,7 +192,7 @@ BENT = 21  # places along a shaft that bends
 
 def _unbalance_of(rotor: RigidRotor | JeffcottRotor) -> complex:
     """In kg m, as a vector on the rotor, with a loss from the beginning."""
-    return cmath.rect(*with_loss(rotor.unbalance, 0.0, rotor.loss))
+    return cmath.rect(*with_losses(rotor.unbalance, 0.0, rotor.losses))
 
 
 @dataclass(frozen=True)
@@ -207,7 +207,7 @@ class RigidShaft(Shaft):
 
     def body(self) -> Body:
         rotor = self.rotor
-        unbalance, phase = with_loss(rotor.unbalance, 0.0, rotor.loss)
+        unbalance, phase = with_losses(rotor.unbalance, 0.0, rotor.losses)
         return point_mass("journal", rotor.mass, rotor.gravity, unbalance, rotor.external_damping, phase)
 
     def undamped_body(self) -> Body:
@@ -247,7 +247,7 @@ class JeffcottShaft(Shaft):
 
     def body(self) -> Body:
         rotor = self.rotor
-        unbalance, phase = with_loss(rotor.unbalance, 0.0, rotor.loss)
+        unbalance, phase = with_losses(rotor.unbalance, 0.0, rotor.losses)
         return jeffcott_rotor(
             rotor.mass, rotor.journal_mass, rotor.shaft_stiffness, unbalance, rotor.external_damping,
             rotor.shaft_damping, rotor.gravity, rotor.internal_damping, phase, cmath.rect(rotor.bow, rotor.bow_phase),

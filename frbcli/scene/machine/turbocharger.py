@@ -23,7 +23,7 @@ from frbcli.case.rotor import (
     TurbochargerRotor,
     bow_places,
     unbalance_sizes,
-    with_loss,
+    with_losses,
 )
 from frbcli.case.schema import Case
 from frbcli.elements.thrust import COLLAR
@@ -318,7 +318,7 @@ class TurbochargerShaft(Shaft):
 
 
 def _wheel(disk: Disk, name: str) -> Wheel:
-    unbalance, phase = with_loss(disk.unbalance, disk.phase, disk.loss)
+    unbalance, phase = with_losses(disk.unbalance, disk.phase, disk.losses)
     return Wheel(name, disk.position, disk.mass, disk.polar_inertia, disk.diametral_inertia, unbalance, phase)
 
 
