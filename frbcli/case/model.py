@@ -309,7 +309,7 @@ Stiffness = Annotated[float, Quantity("N/m", "5000 N/mm", above=0)]
 Damping = Annotated[float, Quantity("N*s/m", "1 N*s/m", least=0)]
 Acceleration = Annotated[float, Quantity("m/s^2", "9.81 m/s^2", least=0)]
 Force = Annotated[float, Quantity("N", "29.9 N", above=0)]
-Modulus = Annotated[float, Quantity("Pa", "210 GPa", above=0)]
+Modulus = Annotated[float, Quantity("Pa", "210 GPa", least=1e6)]  # 210 is no GPa
 Viscosity = Annotated[float, Quantity("Pa*s", "12 mPa*s", above=0, most=1e3)]  # MPa*s is no mPa*s
 KinematicViscosity = Annotated[float, Quantity(KINEMATIC, "46 cSt", above=0)]
 Flow = Annotated[float, Quantity("m^3/s", "0.2 l/min", above=0)]

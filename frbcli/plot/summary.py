@@ -18,7 +18,6 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
-from scipy.signal import resample_poly
 
 from frbcli.analysis.signals import SlicedColumn, films, joined, located, points, speed_at
 from frbcli.analysis.spectrum import Spectrogram
@@ -184,6 +183,7 @@ LONGEST_s, SHORTEST_s = 0.2, 2e-3
 WIDTH, ROW = 7.2, 2.5  # inches
 FINE = 40.0  # points of a revolution: through fewer samples a curve would have corners
 MARGIN = 12  # samples on either side that values between samples need
+REACH, KAISER = 10, 5.0  # samples on either side that give a value between, and the shape of their window
 ENLARGED = 0.1  # of the clearance: a smaller orbit is drawn without it
 AHEAD = 2.2  # of the rotor speed: up to where a spectrum is drawn
 CLEAR = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5}  # behind a name: lines of others
@@ -239,8 +239,15 @@ def between(part: Signal, first: int, last: int, times: int) -> Values:
     whole = part[max(first - MARGIN, 0) : min(last + MARGIN, len(part))]
     if times <= 1 or len(whole) <= 4 * MARGIN:
         return part[first:last]
-    rest = MARGIN * times
-    return np.asarray(resample_poly(whole, times, 1, padtype="line")[rest : (len(whole) - MARGIN - 1) * times + 1])
+    # scipy.signal has this function, and takes longer to import than the whole picture to draw
+    places, reach = np.arange(len(whole)), np.arange(-REACH * times, REACH * times + 1)
+    fine = np.linspace(0.0, len(whole) - 1.0, (len(whole) - 1) * times + 1)
+    ends = np.array([0, len(whole) - 1])
+    spread = np.zeros(len(fine), dtype=whole.dtype)
+    spread[::times] = whole - np.interp(places, ends, whole[ends])
+    window = np.sinc(reach / times) * np.kaiser(len(reach), KAISER)
+    values = np.convolve(spread, window, "same") + np.interp(fine, ends, whole[ends])
+    return np.asarray(values[MARGIN * times : len(values) - MARGIN * times])
 
 
 def draw_spectrum_at(axes: Axes, run: Run, time_s: float, spectra: Spectrogram, signal: str = "journal") -> None:

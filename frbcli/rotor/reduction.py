@@ -360,7 +360,8 @@ def reduction_error(
 
 def _flexibility(modes: FreeModes, springs: Array) -> Array:
     """(b, b) m/N of the bending modes between places with displacements (b, n)."""
-    bent = springs[:, RIGID:] / modes.frequencies[RIGID:]
+    known = np.maximum(modes.frequencies, math.sqrt(np.finfo(float).eps) * modes.frequencies[-1])  # of their squares
+    bent = springs[:, RIGID:] / known[RIGID:]
     return np.asarray(bent @ bent.T)
 
 

@@ -21,6 +21,7 @@ from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
 
 import frbcli
 from frbcli.analysis.order_tracking import order_tracks
+from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.errors import InputError, RunFileError
 from frbcli.plot.curves import orders_figure
@@ -29,7 +30,7 @@ from frbcli.plot.picture import PICTURES, fit
 from frbcli.plot.picture import picture as picture_of
 from frbcli.plot.signals import DRAWN_POINTS, Envelope, at_times, clearance, curve, labels, model
 from frbcli.plot.style import new_figure, picture, save_figure, styled
-from frbcli.plot.summary import ring_speed_figure, summary_figure
+from frbcli.plot.summary import between, ring_speed_figure, summary_figure
 from frbcli.plot.waterfall import LEVELS_dB, run_spectra, waterfall_figure
 from frbcli.results.records import pieces
 from frbcli.results.store import Run
@@ -420,3 +421,16 @@ def test_a_picture_is_of_the_result_that_its_function_takes(kind: str) -> None:
 
 def test_types_are_told() -> None:
     assert files("frbcli").joinpath("py.typed").is_file()
+
+
+@pytest.mark.parametrize("per_sample", [0.05, 0.2, 0.35, 0.42])  # revolutions; half of one has no other shape
+def test_a_motion_is_drawn_smoothly_between_its_samples(per_sample: float) -> None:
+    """Samples as they are, and a motion on a slope between them within half a percent."""
+
+    def moved(places: Array) -> Array:
+        return np.asarray(3.0 + 0.01 * places + np.sin(2.0 * np.pi * per_sample * places + 0.3))
+
+    signal = moved(np.arange(400.0))
+    fine = between(signal, 100, 300, 8)
+    np.testing.assert_allclose(fine[::8], signal[100:300], rtol=1e-13)
+    np.testing.assert_allclose(fine, moved(np.arange(100.0, 299.01, 0.125)), atol=6e-3)

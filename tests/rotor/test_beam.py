@@ -191,6 +191,8 @@ def test_what_a_reduction_leaves_out() -> None:
     assert few.missing_flexibility - more.missing_flexibility == pytest.approx(step @ step.T, rel=1e-9)
     assert 0 < more.frequency < few.frequency < 0.05
     assert np.all(few.reduced >= few.full)  # Rayleigh: fewer modes are stiffer, where nothing turns quickly
+    limp = replace(modes, frequencies=np.where(np.arange(len(modes.frequencies)) < 4, 0.0, modes.frequencies))
+    assert np.isfinite(reduction_error(limp, limp.lowest(8), held, np.full(2, 1e7), 100.0).missing_flexibility).all()
 
 
 def test_slowest_modes_of_many_sections_are_those_of_all(monkeypatch: pytest.MonkeyPatch) -> None:
