@@ -296,18 +296,18 @@ class _Loads(Reader):
             case BrakingLoad():
                 return given
             case dict() if given.keys() <= POWERS.keys():
-                return BrakingLoad(**{key: self._one(POWERS[key], value) for key, value in given.items()})
+                return BrakingLoad(**{key: self._one(POWERS[key], value, f"{key} ") for key, value in given.items()})
             case str():
                 for key, power in POWERS.items():
                     if as_number(given, power.unit) is not None:
                         return BrakingLoad(**{key: self._one(power, given)})
         raise ValueFault("is no torque over a power of the speed.", self.remedy)
 
-    def _one(self, power: Quantity, given: object) -> float:
+    def _one(self, power: Quantity, given: object, key: str = "") -> float:
         try:
             return power.read(given)
         except ValueFault as fault:
-            raise ValueFault(fault.problem, self.remedy) from None
+            raise ValueFault(f"{key}{fault.problem}", self.remedy) from None
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
         text = {"type": "string", "examples": [power.example for power in POWERS.values()]}
