@@ -5,6 +5,7 @@ Each kind reads what the user wrote and holds SI. A value that does not fit rais
 
 from __future__ import annotations
 
+import math
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
@@ -310,7 +311,7 @@ Damping = Annotated[float, Quantity("N*s/m", "1 N*s/m", least=0)]
 Acceleration = Annotated[float, Quantity("m/s^2", "9.81 m/s^2", least=0)]
 Force = Annotated[float, Quantity("N", "29.9 N", above=0)]
 Modulus = Annotated[float, Quantity("Pa", "210 GPa", least=1e6)]  # 210 is no GPa
-Viscosity = Annotated[float, Quantity("Pa*s", "12 mPa*s", above=0, most=1e3)]  # MPa*s is no mPa*s
+Viscosity = Annotated[float, Quantity("Pa*s", "12 mPa*s", above=0, most=10.0)]  # neither MPa*s nor a bare 12
 KinematicViscosity = Annotated[float, Quantity(KINEMATIC, "46 cSt", above=0)]
 Flow = Annotated[float, Quantity("m^3/s", "0.2 l/min", above=0)]
 Density = Annotated[float, Quantity("kg/m^3", "850 kg/m^3", above=0)]
@@ -323,7 +324,8 @@ Conductance = Annotated[float, Quantity("W/K", "5 W/K", least=0)]
 SpecificHeat = Annotated[float, Quantity("J/(kg*K)", "2000 J/(kg*K)", above=0)]
 ThermalConductivity = Annotated[float, Quantity("W/(m*K)", "0.14 W/(m*K)", above=0)]
 Expansion = Annotated[float, Quantity("1/K", "1.2e-5 1/K", least=0, below=1e-2)]
-Angle = Annotated[float, Quantity(ANGLE, "15 deg")]
+_TURN = 2.0 * math.pi * (1.0 + 1e-9)
+Angle = Annotated[float, Quantity(ANGLE, "15 deg", least=-_TURN, most=_TURN)]  # 90 is no 90 deg
 OpeningAngle = Annotated[float, Quantity(ANGLE, "15 deg", above=0, below=6.28)]
 Speed = Annotated[float, Quantity(SPEED, "300 Hz", least=0)]
 TopSpeed = Annotated[float, Quantity(SPEED, "1000 Hz", above=0)]

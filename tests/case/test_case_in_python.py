@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 import frbcli
@@ -318,6 +318,7 @@ def test_any_text(text: str) -> None:
 
 @QUICK
 @given(st.dictionaries(st.sampled_from(sorted(json_schema()["properties"])), TREES, max_size=8))
+@example({"bearing": {"kind": []}})
 def test_any_tables(data: dict[str, Any]) -> None:
     load(to_toml(data))
 

@@ -44,8 +44,9 @@ def has_films(data: Mapping[str, Any]) -> bool:
 
 def balls_alone(data: Mapping[str, Any]) -> bool:
     """Whether a case is of ball bearings alone, for their sheet."""
-    kinds = {bearing.get("kind") for _, bearing in tables(data, "bearing")}
-    return kinds == {"ball"} and not {"rotor", "speed"} & data.keys()
+    listed = tables(data, "bearing")
+    balls = bool(listed) and all(bearing.get("kind") == "ball" for _, bearing in listed)
+    return balls and not {"rotor", "speed"} & data.keys()
 
 
 def element_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:

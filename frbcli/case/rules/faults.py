@@ -60,6 +60,7 @@ VALUES_ELSEWHERE = {
         **dict.fromkeys(("long", "infinite"), 'The width counts always: write "finite".'),
         **dict.fromkeys(("fem", "fvm", "fdm", "element", "volume", "full", "2d"), 'Write "finite".'),
     },
+    "supply": dict.fromkeys(("hole", "drill"), 'Write kind = "bores".'),
     "ends": {
         **dict.fromkeys(("open", "air", "ambient"), 'Write "free-to-air".'),
         **dict.fromkeys(("flood", "bath", "submerged"), 'Write "oil-bath".'),
@@ -93,14 +94,26 @@ KEYS_ELSEWHERE = {  # (the key that takes its place, in whose table alone it is 
     "preload": ("lobes", "Write preload in lobes."),
     "unwucht": ("unbalance", "Write unbalance."),
     "gravity": ("rotor", "Write gravity in [rotor]."),
-    "eccentricity": ("unbalance", "Write unbalance, the mass times this eccentricity."),
+    **dict.fromkeys(("eccentricity", "e"), ("unbalance", "Write unbalance, the mass times this eccentricity.")),
+    **dict.fromkeys(("cp", "c_p", "specific_heat"), ("heat_capacity", "Write heat_capacity.")),
+    "angle": ("phase", "Write phase."),
+    **dict.fromkeys(("x", "z", "station", "axial_position"), ("position", "Write position.")),
+    "E": ("youngs_modulus", "Write youngs_modulus."),
+    "material": ("youngs_modulus", "Write density and youngs_modulus."),
+    **dict.fromkeys(("od", "OD", "outer_diameter"), ("diameter", "Write diameter.")),
+    **dict.fromkeys(("id", "ID"), ("inner_diameter", "Write inner_diameter.")),
+    **dict.fromkeys(("Ip", "Jp", "I_p"), ("polar_inertia", "Write polar_inertia.")),
+    **dict.fromkeys(("Id", "It", "Jd", "I_d", "I_t"), ("diametral_inertia", "Write diametral_inertia.")),
     **dict.fromkeys(("max", "end", "stop", "drehzahl"), ("to", "Write to.")),
     **dict.fromkeys(("min", "start"), ("from", "Write from.")),
-    **dict.fromkeys(("ramp", "acceleration"), ("duration", OVER_RATE)),
+    **dict.fromkeys(("ramp", "acceleration", "rate"), ("duration", OVER_RATE)),
     "rpm": ("to", 'Write the unit with the number, e.g. to = "18000 rpm".'),
     **dict.fromkeys(("radial_clearance", "C", "c", "Cr"), ("clearance", "Clearances are radial: write clearance.")),
     **dict.fromkeys(
-        ("diametral_clearance", "diametrical_clearance"),
+        ("psi", "relative_clearance", "clearance_ratio"), ("clearance", "Write clearance, this times the radius.")
+    ),
+    **dict.fromkeys(
+        ("diametral_clearance", "diametrical_clearance", "cd", "Cd", "C_d"),
         ("clearance", "Clearances are radial: write clearance, half of the diametral one{half}."),
     ),
 }
@@ -178,7 +191,8 @@ def _breach(path: Path, loc: Sequence[str | int], kind: str, context: dict[str, 
     if kind in ("union_tag_invalid", "union_tag_not_found"):
         problem = MISSING if kind == "union_tag_not_found" else UNKNOWN
         tag = str(context.get("tag", ""))
-        return Breach((*path, "kind"), problem, _elsewhere(path[:1], tag) or did_you_mean(tag, _kinds(loc)))
+        table = tuple(part for part in path if isinstance(part, str))[-1:]
+        return Breach((*path, "kind"), problem, _elsewhere(table, tag) or did_you_mean(tag, _kinds(loc)))
     if kind == "literal_error":
         given = str(context["input"])
         elsewhere = _elsewhere(path[-1:], given)
