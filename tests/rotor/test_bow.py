@@ -212,7 +212,7 @@ def test_a_bent_shaft_runs_up_as_its_equations_of_motion() -> None:
         "speed": {"from": "20 Hz", "to": "80 Hz", "duration": f"{end} s"},
     }  # fmt: skip
     case = case_from_dict(data, "bent")
-    system, profile = make_system(case, make_plan(case)), speed_profile((0.0, end), (low, low + rate * end))
+    system, profile = make_system(case, make_plan(case)), speed_profile([0.0, end], [low, low + rate * end])
     limits = control(tolerance=1e-8, longest=end / 200.0, output=5e-4)
     run, places_of = march(system, profile, limits, first_state(case.start, system, profile)), dict(system.rotor.points)
 
