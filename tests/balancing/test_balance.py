@@ -14,6 +14,7 @@ from commands import Frb
 import frbcli
 from frbcli.balancing import Balancing
 from frbcli.case.reading.load import case_from_dict
+from frbcli.errors import InputError
 from frbcli.results.store import Run
 
 COEFFICIENTS: list[dict[str, Any]] = [
@@ -114,6 +115,27 @@ def test_the_run_with_the_correction_moves_as_little_as_expected(linear: Run, tm
         [point.remaining for point in found.points], rel=1e-3
     )
     assert found.status == "doubtful"  # b does not explain what a does
+
+
+@pytest.mark.parametrize("time_s", [0.1, 0.45])
+def test_after_a_loss_the_whole_unbalance_is_found(time_s: float, tmp_path: Path) -> None:
+    """Also where most of the run is before it: vectors of before and after it have no unbalance in common."""
+    lost = polar(4.0, -60.0)
+    case = two_disks(COEFFICIENTS, LINEAR["a"], LINEAR["b"], "120..120 Hz, 0.6 s")
+    losing = case.with_settings(
+        {"disk.1.loss": {"time": f"{time_s} s", "unbalance": "4 g*mm", "phase": "-60 deg"}}
+    )
+    found = frbcli.balance(frbcli.runup(losing, tmp_path / "run.h5"), ["a", "b"])
+    assert_near(found, LINEAR | {"b": LINEAR["b"] + lost}, 1e-2)
+    assert found.status == "good"
+
+
+def test_a_run_that_ends_soon_after_a_loss_is_not_balanced(tmp_path: Path) -> None:
+    case = two_disks(COEFFICIENTS, LINEAR["a"], LINEAR["b"], "120..120 Hz, 0.2 s")
+    losing = case.with_settings({"disk.1.loss": {"time": "0.19 s", "unbalance": "4 g*mm"}})
+    run = frbcli.runup(losing, tmp_path / "run.h5")
+    with pytest.raises(InputError, match=r"too soon after the loss or the new clearance at 0\.19 s"):
+        frbcli.balance(run, ["a", "b"])
 
 
 def test_a_rotor_in_films_has_small_unbalances_that_were_put_in(tmp_path: Path) -> None:
