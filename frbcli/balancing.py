@@ -77,7 +77,7 @@ def synchronous_vectors(
         raise input_error("balance", "speed", "", "is not above 0: the rotor turns the other way round.", "")
     speeds = _usual_speeds(tracks[0]) if speeds_Hz is None else sorted(set(speeds_Hz))
     turned = np.exp(2j * np.pi * run.references.get(MARK, 0.0))
-    rows = [[_at(track, speed) for track in tracks] for speed in speeds]
+    rows = [[_at(track, speed, changed_s) for track in tracks] for speed in speeds]
     values = np.array([[value for value, _ in row] for row in rows])
     scatter = np.array([[scatter for _, scatter in row] for row in rows])
     return SynchronousVectors(np.array(speeds), tuple(names), turned * values, scatter)
@@ -124,12 +124,13 @@ def _usual_speeds(track: OrderTrack) -> list[float]:
     return [float(speed) for speed in np.linspace(max(FROM * top, float(speeds.min())), TO * top, SPEEDS)]
 
 
-def _at(track: OrderTrack, speed: float) -> tuple[Complex, Array]:
-    """Vector (2,) and scatter (2,) in m at a speed in Hz."""
+def _at(track: OrderTrack, speed: float, changed_s: float) -> tuple[Complex, Array]:
+    """Vector (2,) and scatter (2,) in m at a speed in Hz, of a track since its last change."""
     speeds = track.speed_Hz
     nearest = int(np.argmin(np.abs(speeds - speed)))
     if abs(speeds[nearest] - speed) > NEAR * speed:
-        problem = f"is not reached; the run goes from {speeds.min():.4g} to {speeds.max():.4g} Hz."
+        since = "" if changed_s < 0.0 else f" after the loss or the new clearance at {changed_s:.4g} s"
+        problem = f"is not reached{since}; the run goes from {speeds.min():.4g} to {speeds.max():.4g} Hz."
         raise input_error("balance", "speed", f"{speed:.6g} Hz", problem, "Choose another speed, by --speed.")
     values = np.stack([track.along("x"), track.along("y")], axis=-1)
     near = np.flatnonzero(np.abs(speeds - speeds[nearest]) <= SAME * speed)
