@@ -19,6 +19,7 @@ from frbcli.rotor.loads import speed_profile
 from frbcli.rotor.port import ANSWER, MOTION, XX
 from frbcli.rotor.port_function import evaluate
 from frbcli.runs.run import runup
+from frbcli.scene.machine.findings import remarks
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 
@@ -237,6 +238,21 @@ def test_a_stop_between_disk_and_journals_acts_on_both_as_they_run_up(ends: list
     found = np.array([run[f"{name}_x_m"] + 1j * run[f"{name}_y_m"] for name in ("disk", "journal")])
     assert np.abs(known[0] - known[1]).max() > 1.5 * gap
     assert np.abs(found - known).max() < 2e-5 * np.abs(known).max()
+
+
+@pytest.mark.parametrize(("place", "told"), [("housing", 0), ("journal", 1)])
+def test_a_stop_that_rubs_between_places_that_turn_together_is_remarked(place: str, told: int) -> None:
+    data = {
+        "rotor": {"kind": "jeffcott", "mass": "2 kg", "journal_mass": "0.5 kg", "shaft_stiffness": "1e6 N/m",
+                  "unbalance": "1 g*mm"},
+        "bearing": {"kind": "coefficients", "stiffness": "1e6 N/m"},
+        "housing": {"mass": "3 kg", "mounts": [{"stiffness": "2e6 N/m"}]},
+        "spring": [{"between": ["disk", place], **stop(friction=0.1)}],
+        "speed": {"from": "60 Hz", "to": "140 Hz", "duration": "0.2 s"},
+    }  # fmt: skip
+    said = remarks(case_from_dict(data, "stop"))
+    assert len(said) == told
+    assert all("rubs between two places of the shaft, disk and journal" in each for each in said)
 
 
 def assert_springs_are(data: dict[str, Any], table: str, key: str, stiffer: str) -> None:
