@@ -331,11 +331,12 @@ def wrong_values(signals: Mapping[str, Signal]) -> str:
 
 
 def wrong_event(events: list[dict[str, Any]], time: Signal) -> bool:
-    """Whether an event lies outside of the samples of a run."""
+    """Whether an event lies outside of the samples of a run. One may lie between the last sample and the next one,
+    which is as far off as the samples are even."""
     if not len(time):
         return bool(events)
     begin, end = float(time[:1][0]), float(time[-1:][0])
-    reach = end + _step(time)
+    reach = end + (1.0 + UNEVEN) * _step(time)
     return any(not begin <= event["t_s"] <= reach for event in events)
 
 

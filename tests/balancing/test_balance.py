@@ -14,6 +14,7 @@ from commands import Frb
 import frbcli
 from frbcli.balancing import Balancing
 from frbcli.case.reading.load import case_from_dict
+from frbcli.errors import InputError
 from frbcli.results.store import Run
 
 COEFFICIENTS: list[dict[str, Any]] = [
@@ -114,6 +115,32 @@ def test_the_run_with_the_correction_moves_as_little_as_expected(linear: Run, tm
         [point.remaining for point in found.points], rel=1e-3
     )
     assert found.status == "doubtful"  # b does not explain what a does
+
+
+def losing(time_s: float) -> frbcli.Case:
+    """A Jeffcott rotor of 3 g mm at 120 Hz for 0.4 s that loses 4 g mm."""
+    rotor = {"kind": "jeffcott", "mass": "2 kg", "journal_mass": "0.2 kg", "shaft_stiffness": "3e6 N/m",
+             "unbalance": "3 g*mm", "external_damping": "300 N*s/m",
+             "loss": {"time": f"{time_s} s", "unbalance": "4 g*mm", "phase": "-60 deg"}}  # fmt: skip
+    bearing = {name: COEFFICIENTS[0][name] for name in ("kind", "stiffness", "damping")}
+    speed = {"from": "120 Hz", "to": "120 Hz", "duration": "0.4 s"}
+    return case_from_dict({"rotor": rotor, "bearing": bearing, "speed": speed, "start": {"position": "resting"}})
+
+
+@pytest.mark.parametrize("time_s", [0.1, 0.25])
+def test_after_a_loss_the_whole_unbalance_is_found(time_s: float, tmp_path: Path) -> None:
+    """Also where most of the run is before it: vectors of before and after it have no unbalance in common."""
+    found = frbcli.balance(frbcli.runup(losing(time_s), tmp_path / "run.h5"), ["disk"])
+    assert_near(found, {"disk": 3.0 + polar(4.0, -60.0)}, 1e-2)
+    assert found.status == "good"
+    with pytest.raises(InputError, match=f"is not reached after the loss or the new clearance at {time_s} s"):
+        frbcli.balance(found.run, ["disk"], [60.0])
+
+
+def test_a_run_that_ends_soon_after_a_loss_is_not_balanced(tmp_path: Path) -> None:
+    run = frbcli.runup(losing(0.39), tmp_path / "run.h5")
+    with pytest.raises(InputError, match=r"too soon after the loss or the new clearance at 0\.39 s"):
+        frbcli.balance(run, ["disk"])
 
 
 def test_a_rotor_in_films_has_small_unbalances_that_were_put_in(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from marches import Result, control, march, start
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
 import frbcli
@@ -19,6 +19,7 @@ from frbcli.rotor.loads import speed_profile
 from frbcli.rotor.port import ANSWER, MOTION, XX
 from frbcli.rotor.port_function import evaluate
 from frbcli.runs.run import runup
+from frbcli.scene.machine.findings import remarks
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 
@@ -201,6 +202,57 @@ def test_friction_against_the_motion_of_the_centre_loses_the_work_that_it_does()
     energy = 0.5 * M * (result.v**2).sum(axis=1) + 0.5 * K * (result.q**2).sum(axis=1) + 0.5 * STOP * depth**2
     assert np.diff(energy).max() < 1e-8 * energy[0]
     assert energy[-1] < 0.99 * energy[0]
+
+
+@pytest.mark.parametrize("ends", [["disk", "journal"], ["journal", "disk"]])
+def test_a_stop_between_disk_and_journals_acts_on_both_as_they_run_up(ends: list[str], tmp_path: Path) -> None:
+    """Through the critical speed at 94 Hz against an integration of both bodies, with damper, third power and friction
+    against the sliding u = R Omega + v_t."""
+    mass, small, shaft, held, damping, unbalance = 2.0, 0.5, 1e6, 2e6, 300.0, 2e-5
+    stiff, third, gap, damper, friction, radius = 8e5, 1e15, 15e-6, 80.0, 0.2, 2e-5
+    data = {
+        "rotor": {"kind": "jeffcott", "mass": f"{mass} kg", "journal_mass": f"{small} kg", "gravity": 0,
+                  "shaft_stiffness": f"{shaft} N/m", "unbalance": f"{unbalance} kg*m"},
+        "bearing": {"kind": "coefficients", "stiffness": f"{0.5 * held} N/m", "damping": f"{0.5 * damping} N*s/m"},
+        "spring": [{"between": ends, "stiffness": f"{stiff} N/m", "cubic": f"{third} N/m^3", "gap": f"{gap} m",
+                    "damping": f"{damper} N*s/m", "friction": friction, "radius": f"{radius} m"}],
+        "speed": {"from": "60 Hz", "to": "140 Hz", "duration": "0.2 s"}, "accuracy": {"tolerance": 1e-8},
+    }  # fmt: skip
+    run, rate = runup(case_from_dict(data, "stop"), tmp_path / "run.h5"), TURN * 400.0
+
+    def motion(t: float, state: np.ndarray) -> np.ndarray:
+        (disk, journal), (v_disk, v_journal) = state[:2], state[2:]
+        omega, turned = TURN * 60.0 + rate * t, np.exp(1j * (TURN * 60.0 * t + 0.5 * rate * t**2))
+        apart, bent = disk - journal, shaft * (disk - journal)
+        if (depth := abs(apart) - gap) > 0.0:
+            n = apart / abs(apart)
+            moved = np.conj(n) * (v_disk - v_journal)
+            pushed = max(stiff * depth + third * depth**3 + damper * moved.real, 0.0)
+            bent += pushed * n * (1.0 + 1j * friction * math.tanh((radius * omega + moved.imag) / STICKS))
+        driven = unbalance * (rate + 1j * omega**2) * turned
+        left = bent - held * journal - damping * v_journal
+        return np.array([v_disk, v_journal, (driven - bent) / mass, left / small])
+
+    known = solve_ivp(motion, (0.0, 0.2), np.zeros(4, complex), "DOP853", rtol=1e-9, atol=1e-13, max_step=1e-4,
+                      t_eval=run["time_s"]).y[:2]  # fmt: skip
+    found = np.array([run[f"{name}_x_m"] + 1j * run[f"{name}_y_m"] for name in ("disk", "journal")])
+    assert np.abs(known[0] - known[1]).max() > 1.5 * gap
+    assert np.abs(found - known).max() < 2e-5 * np.abs(known).max()
+
+
+@pytest.mark.parametrize(("place", "told"), [("housing", 0), ("journal", 1)])
+def test_a_stop_that_rubs_between_places_that_turn_together_is_remarked(place: str, told: int) -> None:
+    data = {
+        "rotor": {"kind": "jeffcott", "mass": "2 kg", "journal_mass": "0.5 kg", "shaft_stiffness": "1e6 N/m",
+                  "unbalance": "1 g*mm"},
+        "bearing": {"kind": "coefficients", "stiffness": "1e6 N/m"},
+        "housing": {"mass": "3 kg", "mounts": [{"stiffness": "2e6 N/m"}]},
+        "spring": [{"between": ["disk", place], **stop(friction=0.1)}],
+        "speed": {"from": "60 Hz", "to": "140 Hz", "duration": "0.2 s"},
+    }  # fmt: skip
+    said = remarks(case_from_dict(data, "stop"))
+    assert len(said) == told
+    assert all("rubs between two places of the shaft, disk and journal" in each for each in said)
 
 
 def assert_springs_are(data: dict[str, Any], table: str, key: str, stiffer: str) -> None:

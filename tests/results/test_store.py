@@ -195,6 +195,15 @@ def test_a_run_with_a_wrong_part_is_refused_or_read(run_path: Path, part: str, c
             assert str(run_path) in str(error)  # noqa: PT017
 
 
+@pytest.mark.parametrize("count", [50_589, 50_590, 51_000])
+def test_a_rotor_may_stand_still_a_whole_step_after_the_last_sample(count: int) -> None:
+    """Where its speed fades away, the standstill is extrapolated to there; steps differ by round-off."""
+    times = 2e-4 * np.arange(count)
+    stands = times[-1] + (times[-1] - times[-2])
+    assert not records.wrong_event([{"t_s": stands}], times)
+    assert records.wrong_event([{"t_s": times[-1] + 2.1e-4}], times)
+
+
 def test_signals_of_different_length_are_refused(run_path: Path) -> None:
     content = io.BytesIO(run_path.read_bytes())
     with h5py.File(content, "r+") as file:

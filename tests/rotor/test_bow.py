@@ -12,6 +12,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from marches import control, march
+from scipy.integrate import solve_ivp
 from series_rotors import HEAVY
 
 import frbcli
@@ -20,7 +22,11 @@ from frbcli.case.reading.load import case_from_dict, load_case
 from frbcli.linear.response import Response, response
 from frbcli.results.store import Run
 from frbcli.rotor.assembly import held_rotor
+from frbcli.rotor.loads import speed_profile
+from frbcli.runs.start import first_state
 from frbcli.scene.machine.rotor import make_rotor
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
 
 TURN = 2.0 * math.pi
 M, C, D, STIFF = 1.0, 1e6, 40.0, 1e11  # kg, N/m, N s/m: 159 Hz and a damping ratio of 0.02; N/m of a bearing
@@ -178,3 +184,45 @@ def test_a_bent_rotor_in_films_runs_as_its_linear_response(tmp_path: Path) -> No
     for axis, of in (("x", 0), ("y", 1)):
         seen = 2.0 * np.mean(run[f"disk_{axis}_m"][late][:-1] * turn)
         assert seen == pytest.approx(found.motion[0, found.points.index("disk"), of], rel=2e-3)
+
+
+def sag(x: float, at: float) -> float:
+    """Deflection at x under a unit force, of a massless shaft on two rigid bearings, by bending and shear."""
+    x, at = min(x, at), max(x, at)
+    beyond, second, area = LENGTH - at, math.pi / 64.0 * DIAMETER**4, math.pi / 4.0 * DIAMETER**2
+    bending = x * beyond * (LENGTH**2 - beyond**2 - x**2) / (6.0 * LENGTH * E_MODULUS * second)
+    return bending + x * beyond / LENGTH / (6.0 * 1.3 / (7.0 + 6.0 * 0.3) * G_MODULUS * area)
+
+
+def test_a_bent_shaft_runs_up_as_its_equations_of_motion() -> None:
+    """Two disks with unbalances u on a light shaft through its first critical speed, each at a point of a bow b, from
+    q = b e^(i alpha) on, alpha from y: M q'' + D q' + K (q - b e^(i alpha)) = (Omega^2 - i Omega') u e^(i alpha)."""
+    places, masses, damping = np.array([0.12, 0.25]), np.array([0.4, 0.6]), 15.0
+    unbalance, bow = np.array([4e-6, 3e-6j]), 1e-5 * np.exp(1j * np.array([0.7, -1.2]))
+    stiffness = np.linalg.inv([[sag(x, at) for at in places] for x in places])
+    low, rate, end = TURN * 20.0, TURN * 300.0, 0.2
+    disks = [{"name": f"{k}", "position": f"{x} m", "mass": f"{masses[k]} kg", "unbalance": f"{abs(unbalance[k])} kg*m",
+              "phase": f"{cmath.phase(unbalance[k])} rad"} for k, x in enumerate(places)]  # fmt: skip
+    bows = [{"position": f"{x} m", "offset": f"{abs(bow[k])} m", "phase": f"{cmath.phase(bow[k])} rad"}
+            for k, x in enumerate(places)]  # fmt: skip
+    data = {
+        "rotor": {"kind": "turbocharger", "gravity": 0, "external_damping": f"{damping} N*s/m"}, "disk": disks,
+        "bow": bows, "shaft": [SHAFT["shaft"][0] | {"density": "0.01 kg/m^3"}],
+        "bearing": [one | {"stiffness": "1e13 N/m"} for one in SHAFT["bearing"]],
+        "speed": {"from": "20 Hz", "to": "80 Hz", "duration": f"{end} s"},
+    }  # fmt: skip
+    case = case_from_dict(data, "bent")
+    system, profile = make_system(case, make_plan(case)), speed_profile([0.0, end], [low, low + rate * end])
+    limits = control(tolerance=1e-8, longest=end / 200.0, output=5e-4)
+    run, places_of = march(system, profile, limits, first_state(case.start, system, profile)), dict(system.rotor.points)
+
+    def motion(t: float, state: Array) -> Array:
+        omega, turned = low + rate * t, 1j * cmath.exp(1j * (low * t + 0.5 * rate * t**2))
+        force = (omega**2 - 1j * rate) * unbalance * turned - stiffness @ (state[:2] - bow * turned)
+        return np.concatenate([state[2:], (force - damping * state[2:]) / masses])
+
+    start = np.concatenate([1j * bow, -low * bow])  # turns with the rotor
+    known = solve_ivp(motion, (0.0, end), start, "DOP853", rtol=1e-10, atol=1e-15, t_eval=run.times).y[:2]
+    found = np.array([[1.0, 1j] @ places_of[f"disk_{k}"] @ run.q.T for k in range(2)])
+    assert np.abs(known).max() > 4.0 * np.abs(bow).max()
+    assert np.abs(found - known).max() < 2e-5 * np.abs(known).max()

@@ -1,5 +1,6 @@
 """Runs of rough bearings: from rest on the shell to the film and back, their energy, events and resume."""
 
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,7 +13,8 @@ from scipy.integrate import quad
 from scipy.interpolate import CubicSpline
 from scipy.linalg import expm
 
-from frbcli.case.reading.load import load_case
+from frbcli.arrays import Array
+from frbcli.case.reading.load import case_from_dict, load_case
 from frbcli.case.schema import Case
 from frbcli.equilibrium import static_films
 from frbcli.equilibrium.resting import resting_position
@@ -57,30 +59,48 @@ def test_a_rotor_starts_on_its_shell_rolls_up_and_lifts_off(started: Run) -> Non
     )
 
 
-def test_drive_gives_what_films_and_friction_take_and_what_is_stored(started: Run) -> None:
-    case = rigid()
+def whole(run: Run, values: Array) -> float:
+    """Over the time of a run."""
+    time = run["time_s"]
+    return float(CubicSpline(time, values).integrate(time[0], time[-1]))
+
+
+def stored(run: Run, case: Case) -> float:
+    """What motion, weight and the summits of both bearings as springs have at the end of a run from rest, J."""
     (film,), rotor, surfaces = case.films, case.rotor, rough_surfaces(case)
     assert surfaces is not None
-    t = started["time_s"]
-
-    def whole(values: np.ndarray) -> float:
-        return float(CubicSpline(t, values).integrate(t[0], t[-1]))
 
     def pressed(eccentricity: float) -> float:
-        """Energy of the summits of one bearing as a spring."""
+        """Energy of the summits of one bearing."""
         free = film.clearance - LAST * surfaces.roughness
         own = quad(lambda e: touch(surfaces, 0, film.clearance, e).radial, free, max(free, eccentricity), epsrel=1e-10)
         return float(own[0])
 
-    drive = whole(-2.0 * started["torque_N_m"] * 2.0 * np.pi * started["speed_Hz"])
-    lost = whole(2.0 * started["power_W"])
-    places = [started[f"journal_{axis}_m"] for axis in "xy"]
+    t, places, mass = run["time_s"], [run[f"journal_{axis}_m"] for axis in "xy"], 6.1
     speed = np.hypot(*(CubicSpline(t, place)(t[-1], 1) for place in places))
-    mass = 6.1
-    stored = 0.5 * mass * speed**2 + mass * rotor.gravity * (places[1][-1] - places[1][0])
-    stored += 2.0 * (pressed(float(np.hypot(*(p[-1] for p in places)))) - pressed(float(-places[1][0])))
-    assert drive - lost - stored == pytest.approx(0.0, abs=1e-8 * drive)
-    assert 0.1 * drive < whole(2.0 * started["contact_power_W"]) < 0.9 * drive
+    moved = 0.5 * mass * speed**2 + mass * rotor.gravity * (places[1][-1] - places[1][0])
+    return moved + 2.0 * (pressed(float(np.hypot(*(p[-1] for p in places)))) - pressed(float(-places[1][0])))
+
+
+def test_drive_gives_what_films_and_friction_take_and_what_is_stored(started: Run) -> None:
+    drive = whole(started, -2.0 * started["torque_N_m"] * 2.0 * np.pi * started["speed_Hz"])
+    lost = whole(started, 2.0 * started["power_W"])
+    assert drive - lost - stored(started, rigid()) == pytest.approx(0.0, abs=1e-8 * drive)
+    assert 0.1 * drive < whole(started, 2.0 * started["contact_power_W"]) < 0.9 * drive
+
+
+def test_a_torque_gives_what_rotation_load_films_and_friction_take(tmp_path: Path) -> None:
+    """From standstill at free speed, through contact of the summits: the work of the torque, less that of the load."""
+    inertia, torque, load = 2e-3, 0.12, 2e-4
+    tables = {name: keys for name, keys in tomllib.loads(rigid().source_text).items() if name != "speed"}
+    tables["rotor"] |= {"polar_inertia": f"{inertia} kg*m^2"}
+    tables["drive"] = {"torque": f"{torque} N*m", "load": f"{load} N*m*s", "duration": "0.1 s"}
+    case = case_from_dict(tables | {"output": tables["output"] | {"step": "20 us"}, "accuracy": {"tolerance": 1e-8}})
+    run = runup(case, tmp_path / "run.h5")
+    omega = 2.0 * np.pi * run["speed_Hz"]
+    work, lost = whole(run, (torque - load * omega) * omega), whole(run, 2.0 * run["power_W"])
+    assert work - 0.5 * inertia * omega[-1] ** 2 - lost - stored(run, case) == pytest.approx(0.0, abs=1e-6 * work)
+    assert whole(run, 2.0 * run["contact_power_W"]) > 0.02 * work
 
 
 @pytest.fixture

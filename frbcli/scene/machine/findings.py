@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from frbcli.arrays import larger_semi_axis
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.film import ColdClearance, FilmGeometry
+from frbcli.case.over_time import node_at
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, spaced, speed_shown
 from frbcli.elements.ball import RATING_PRESSURE, BallBearingElement, at_displacement
@@ -230,6 +231,7 @@ def _cone(case: Case) -> float:
 
 NEXT = 1e-6  # m: a bearing where two sections meet lies on both
 ALIKE = 0.1  # of the diameter of the shaft, by which a journal's may differ
+OF_SHAFT = ("journal", "disk")  # begin the names of the nodes that turn with it
 
 
 @dataclass(frozen=True)
@@ -313,7 +315,7 @@ def remarks(case: Case) -> tuple[str, ...]:
     shaft = shaft_of(case)
     if not (shaft.eccentricity or shaft.bow) and not case.forces and not case.bases:
         sentences.append("The rotor has no unbalance: it moves by itself only where it is unstable.")
-    return (*sentences, *_journals_off_the_shaft(case), *_names_off_their_place(case))
+    return (*sentences, *_rubs_on_the_shaft(case), *_journals_off_the_shaft(case), *_names_off_their_place(case))
 
 
 def _dented_balls(case: Case) -> Iterator[str]:
@@ -338,6 +340,17 @@ def _loose_rows(case: Case) -> Iterator[str]:
             if any(row.balls.inner_load.max() <= 0.0 for row in rows):
                 yield f"The axial load takes the whole preload off one row of {element.key}: its balls may slide."
                 break
+
+
+def _rubs_on_the_shaft(case: Case) -> Iterator[str]:
+    """Stops whose friction has both places on the shaft."""
+    for number, spring in enumerate(case.springs, start=1):
+        turning = all(node_at(case, place).startswith(OF_SHAFT) for place in spring.ends if place)
+        if spring.friction and spring.between is not None and turning:
+            yield (
+                f"The stop {number} rubs between two places of the shaft, {' and '.join(spring.between)}: they turn "
+                "together, but its friction is that against a place which does not turn."
+            )
 
 
 def _journals_off_the_shaft(case: Case) -> Iterator[str]:
