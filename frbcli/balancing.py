@@ -86,7 +86,7 @@ def synchronous_vectors(
 def _last_change(run: RunLike) -> float:
     """When a part was lost or a clearance changed for the last time, s; before the run if nothing changes."""
     end = float(signal_of(run, TIME)[len(run) - 1 :][0])
-    changes = (time for change in (LOSS, CLEARANCE_STEP) for time in times_of(run, change))
+    changes = (time for change in (LOSS, CLEARANCE_STEP) for time, _ in times_of(run, change))
     return max((time for time in changes if time < end), default=-math.inf)
 
 
