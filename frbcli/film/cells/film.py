@@ -216,7 +216,7 @@ class VolumeFilm:
         """State of the cells with the unknown w (m, k), with the given pressures in grooves and holes; carried: the gas
         that comes into them, else it is in equilibrium."""
         grid = self.grid
-        state = self.law.cells(w, self.scales) if carried is None else self.law.cells_with_gas(w, self.scales, *carried)
+        state = self.law.cells(w, self.scales, *(carried or ()))
         return CellState(
             pressure=np.where(grid.fixed, grid.fixed_pressure, state.pressure),
             fraction=np.where(grid.fixed, 1.0, state.fraction),

@@ -16,9 +16,9 @@ from scipy.special import wrightomega
 from frbcli.case.reading.load import load_case
 from frbcli.film.cavitation.barotropic import Barotropic
 from frbcli.film.cavitation.bubbly import Bubbly
-from frbcli.film.cavitation.compiled import LAW_NUMBERS, compiled_cells, wright_omega
+from frbcli.film.cavitation.compiled import LAW_NUMBERS, wright_omega
 from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds, Sommerfeld
-from frbcli.film.cavitation.law import FilmOil, Law, Scales
+from frbcli.film.cavitation.law import FilmOil, Law
 from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cavitation.table import SHIPPED
 from frbcli.film.cavitation.two_phase import Peeken, TwoPhase
@@ -91,17 +91,6 @@ def film_of(law: Law, near: str, far: str, roughness: float = 0.0) -> VolumeFilm
 
 def test_every_shipped_law_is_held_to_its_plain_form() -> None:
     assert {type(law) for law in LAWS.values()} == set(SHIPPED)
-
-
-@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
-def test_compiled_laws_are_the_plain_ones(law: Law) -> None:
-    w = np.concatenate([np.linspace(-1.3, 0.4, 400), [-1e-9, 0.0, 1e-9]])
-    scales = Scales(reference=900.0, cavitation=-60.0, ambient=500.0)
-    plain = law.cells(w, scales)
-    compiled = compiled_cells(law, w, scales)
-    for name in ("pressure", "fraction", "source", "pressure_slope", "fraction_slope", "source_slope"):
-        values, expected = getattr(compiled, name), getattr(plain, name)
-        assert np.allclose(values, expected, rtol=1e-9, atol=1e-9 * np.max(np.abs(expected)) + 1e-300), name
 
 
 def test_wrights_function_solves_its_equation() -> None:
