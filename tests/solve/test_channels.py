@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from differences import differences
-from flows import net_flow
 from marches import run_up
 from numba import njit
+from plain_balances import CellBalances, net_flow
 from scipy.optimize import brentq
 
 from frbcli.arrays import Array
@@ -17,7 +17,6 @@ from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cells.balance.ends import CHANNELS_NET
-from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.channels import with_channels
 from frbcli.film.cells.data import OIL, PASSED, UNKNOWN, W, volume_films
 from frbcli.film.cells.film import Motion, VolumeFilm

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -13,7 +14,6 @@ from frbcli.arrays import Array
 from frbcli.film.cavitation.compiled import addresses, given_parameters
 from frbcli.film.cavitation.table import LARGEST_PARAMETERS
 from frbcli.film.cells.balance.boundaries import end_slopes, supply_line, supply_pressure
-from frbcli.film.cells.balance.plain_diffusion import NO_DISTANCE, diffusing, end_reaches
 from frbcli.film.cells.block_cyclic import ring_solver
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.bores import bathed
@@ -31,6 +31,8 @@ BY_ITSELF, BY_X, BY_Y, SIDES = range(4)
 BY_ENDS, ALL_SIDES = 1, 5
 # Of forces: how they clip the pressure at p_cav.
 NO_CLIP, BY_CELLS, BETWEEN_MIDDLES = range(3)
+
+NO_DISTANCE = 1e-30  # between two cells of a groove: nothing flows there
 
 
 def record(*fields: tuple[Any, ...]) -> Any:
@@ -250,3 +252,18 @@ def places_along(middles: Array, edges: Array, widths: Array) -> Array:
 W, W_BEFORE, OIL, RATE, WET = range(5)
 GAS, GAS_RATE, WET_WITH_GAS = range(WET, WET + 3)
 PASSED, NOW = range(2)  # layers of their oil: what has passed so far, and passes now
+
+
+def diffusing(section: Section, grid: VolumeGrid) -> tuple[float, float]:
+    """L of the diffusion of a film in rad, at least the mean length of its cells, and by how much more it acts along
+    than around, whose coordinate counts over the width of the section; 0 where there is none."""
+    given = section.diffusion
+    if given is None or given.length == 0.0:
+        return 0.0, 0.0
+    along = (section.bearing_width / section.width) ** 2 if given.along else 0.0
+    return max(given.length, 2.0 * math.pi / grid.shape[0]), along
+
+
+def end_reaches(height: Array, seals: tuple[float, float]) -> tuple[float, float]:
+    """1 over the distances of the last unknowns, at `height` (k,), from the oil beyond the ends z = 0 and z = 1."""
+    return 1.0 / (float(height[0]) + seals[0]), 1.0 / (1.0 - float(height[-1]) + seals[1])

@@ -37,18 +37,6 @@ LOGARITHM = (
 PRESSED = (1.0, 1.875, -0.1171875, -0.0732421875, -0.144195556640625)
 
 
-def summit_integral(n: float, x: float) -> float:
-    """F_n(x) as the integral that defines it."""
-    from scipy.integrate import quad  # only here: the time loop takes the functions below
-
-    def density(u: float) -> float:
-        return float(u**n * math.exp(-u * x - 0.5 * u * u) if x > 0.0 else u**n * math.exp(-0.5 * (u + x) ** 2))
-
-    middle = max(-x, 1.0)
-    whole = sum(quad(density, *ends, epsabs=0.0, epsrel=1e-12)[0] for ends in ((0.0, middle), (middle, middle + 12.0)))
-    return float(whole / math.sqrt(2.0 * math.pi) * (math.exp(-0.5 * x * x) if x > 0.0 else 1.0))
-
-
 @compiled()
 def elastic_summits(x: float) -> tuple[float, float]:
     """F_5/2(x) and its derivative, to 1e-6 of the function; 0 from LAST on."""

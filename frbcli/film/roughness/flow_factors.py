@@ -24,18 +24,6 @@ CUT = 1.0 / 300.0  # local gap over the largest height, below which surfaces tou
 SERIES, TERMS = 3.0, 8  # gap over the largest height from which the moments of the heights serve, and their number
 
 
-def pressure_flow(x: Array) -> Array:
-    """phi_x: flow that a pressure drives, over that between smooth surfaces."""
-    return np.asarray(1.0 - DEPTH * np.exp(-RATE * x))
-
-
-def shear_flow(x: Array) -> Array:
-    """Phi_s: (2 / U sigma) times the flow that a rough surface with the speed U carries in addition to U h / 2."""
-    near = np.minimum(x, FAR)
-    factor = A * near**B * np.exp(-C * near + D * near**2)
-    return np.asarray(factor * np.exp(-FADES * (x - near)))
-
-
 def shear_stress(x: Array) -> Array:
     """phi_f + Phi_fs: force that resists the sliding, over that between smooth surfaces.
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from differences import differences
 from marches import planned_system
+from plain_balances import CellBalances, limited
 from scipy.special import wrightomega
 
 from frbcli.case.reading.load import load_case
@@ -25,7 +26,6 @@ from frbcli.film.cavitation.two_phase import Peeken, TwoPhase
 from frbcli.film.cells.balance.balances import GridMotion, balances
 from frbcli.film.cells.balance.ends import ENDS_NET, FLOWS
 from frbcli.film.cells.balance.newton_step import film_newton
-from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     FRACTION,
@@ -36,7 +36,6 @@ from frbcli.film.cells.balance.states import (
     cell_states,
     follow_law,
     hold,
-    limited,
     limited_at,
 )
 from frbcli.film.cells.block_cyclic import (

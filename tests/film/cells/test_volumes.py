@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from paths import rows_of
+from plain_balances import CellBalances
 from volume_films import CLEARANCE, ROTATION, Row, law_of, motion_of, polar_motion, section_of
 
 from frbcli.bearing_tests.steady_film import FilmMoment, steady_film
@@ -16,7 +17,6 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.penalty import PREFACTOR, Penalty, steepness_exponent
 from frbcli.film.cavitation.two_phase import Peeken, TwoPhase
 from frbcli.film.cells import solver
-from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.film import Motion, Storage, VolumeFilm, fitted_grid, reference_pressure
 from frbcli.film.cells.loads import loads
 from frbcli.film.cells.solver import FilmSolver

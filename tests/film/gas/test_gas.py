@@ -6,7 +6,7 @@ from dataclasses import astuple, replace
 import numpy as np
 import pytest
 from differences import differences
-from flows import oil_paths
+from plain_balances import CellBalances, oil_paths
 from volume_films import ROTATION, section_of
 
 import frbcli
@@ -18,7 +18,6 @@ from frbcli.film.cavitation.law import Law, Scales
 from frbcli.film.cavitation.two_phase import Peeken
 from frbcli.film.cells.balance.balances import GridMotion
 from frbcli.film.cells.balance.ends import FLOWS, GAS_IN, GAS_OUT, GAS_RELEASED
-from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     CARRIED_GAS,

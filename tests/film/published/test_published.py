@@ -12,6 +12,7 @@ from differences import differences
 from films import rectangular
 from marches import planned, run_up
 from paths import rows_of
+from plain_balances import CellBalances, spreads
 
 import frbcli
 from frbcli.arrays import Array
@@ -22,8 +23,6 @@ from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balance.balances import GridMotion, balances
 from frbcli.film.cells.balance.ends import CREATED, FLOWS, INFLOW, OUTFLOW
-from frbcli.film.cells.balance.plain import CellBalances
-from frbcli.film.cells.balance.plain_diffusion import spreads
 from frbcli.film.cells.balance.states import STATES, cell_states, follow_law
 from frbcli.film.cells.block_cyclic import ENTRIES
 from frbcli.film.cells.data import NOW, OIL, PASSED, SIDES, volume_films

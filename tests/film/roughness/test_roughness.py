@@ -6,6 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from differences import differences
+from films import plain_pressure, plain_touch, summit_integral
+from plain_balances import pressure_flow, shear_flow
 from scipy.integrate import quad
 
 from frbcli.film.cavitation.conditions import Elrod, Sommerfeld
@@ -21,14 +23,12 @@ from frbcli.film.roughness.asperities import (
     Asperities,
     elastic_summits,
     rub,
-    summit_integral,
     summit_pressure,
     touch,
     touching_summits,
 )
 from frbcli.film.roughness.contact import Rubbing, flowing_cube, rough_flow, sheared_gap, stress_factor
-from frbcli.film.roughness.flow_factors import CUT, LAST_STRESS, pressure_flow, shear_flow, shear_stress
-from frbcli.film.roughness.plain import plain_pressure, plain_touch
+from frbcli.film.roughness.flow_factors import CUT, LAST_STRESS, shear_stress
 
 SIGMA = 0.03  # over the clearance
 GAPS = (0.5, 0.9, 1.0, 2.0, 2.99, 3.01, 4.9, 5.1, 8.9, 9.1, 30.0)

@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 import pytest
 from differences import differences
-from flows import oil_paths, path_layers
+from plain_balances import CellBalances, oil_paths, path_layers
 
 from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import CellState, Law
@@ -14,7 +14,6 @@ from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balance.balances import COLUMNS, GridMotion, balances
 from frbcli.film.cells.balance.ends import ENDS_NET, FLOWS, SUPPLY_NET
 from frbcli.film.cells.balance.faces import film_loads
-from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, STATES, before_upstream
 from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
 from frbcli.film.cells.data import ALL_SIDES, BY_ENDS

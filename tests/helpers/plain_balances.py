@@ -1,25 +1,159 @@
-"""The oil balance of every cell (3.9), (4.31) on finite volumes: flows through faces, storage, and its derivatives.
+"""The oil balance of every cell (3.9), (4.31) on finite volumes in array notation, to which tests hold the kernels:
+flows through faces, storage, and its derivatives; flows of oil by where they begin.
 
 Lengths are scaled by R and b, pressures by 12 eta / psi^2: a flow is an area times a rate, in 1/s.
 """
-
-from __future__ import annotations
 
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import wrightomega
 
 from frbcli.arrays import Array
 from frbcli.film.cavitation.law import CellState
-from frbcli.film.cells.balance.boundaries import BEND, EndSlope, end_outflow, end_slopes
-from frbcli.film.cells.balance.plain_diffusion import NO_DISTANCE, Spreads, spreads
-from frbcli.film.cells.balance.states import UPWIND, limited
+from frbcli.film.cells.balance.boundaries import BEND, PREFACTOR, STEEPNESS, EndSlope, end_slopes
+from frbcli.film.cells.balance.diffusion import GAMMA, PECLET
+from frbcli.film.cells.balance.ends import CHANNELS_NET, ENDS_NET, SUPPLY_NET
+from frbcli.film.cells.balance.states import UPWIND
+from frbcli.film.cells.data import NO_DISTANCE, PASSED, diffusing, end_reaches
 from frbcli.film.cells.film import Motion, Storage, gap_on
+from frbcli.film.cells.gas.balance import OilPaths
+from frbcli.film.cells.gas.carry import BACKWARD, DOWNWARD, GIVEN, ONWARD, OUT, UPWARD
 from frbcli.film.cells.mesh.bores import bathed
 from frbcli.film.cells.mesh.grid import VolumeGrid
-from frbcli.film.gap import Section, gap_height
-from frbcli.film.roughness.flow_factors import pressure_flow, shear_flow
+from frbcli.film.gap import Edge, Section, gap_height
+from frbcli.film.roughness.flow_factors import DEPTH, FADES, FAR, RATE, A, B, C, D
+from frbcli.solve.state import State
+
+
+def net_flow(state: State, film: int) -> float:
+    """Oil that came in through openings, ends and coupled channels less what left, in units of R b C."""
+    passed = state.flows[PASSED, film]
+    return float(passed[SUPPLY_NET] - passed[ENDS_NET] + passed[CHANNELS_NET])
+
+
+def limited(a: Array, b: Array) -> tuple[Array, Array, Array]:
+    """L and its derivatives by a and b, in array notation."""
+    smooth = a * b > 0.0
+    size = np.where(smooth, a * a + b * b, 1.0)
+    rise = a * b * (a + b)
+    terms = rise, b * (2.0 * a + b) - 2.0 * a * rise / size, a * (a + 2.0 * b) - 2.0 * b * rise / size
+    value, by_a, by_b = (np.where(smooth, 0.5 * one / size, 0.0) for one in terms)
+    return value, by_a, by_b
+
+
+def end_outflow(
+    kind: Edge, pressure: Array, conductance: Array, length: Array, groove: float, ambient: float, bathed: Array
+) -> tuple[Array, Array]:
+    """Outflow of the last cells (n,) through an end and its derivative by their pressure.
+
+    pressure: of the cells; conductance: from their middle to the end; length: of their share of the end, each (n,);
+    groove: pressure in a groove at this end; ambient: absolute ambient pressure; bathed: (n,) share of a free end that
+    lies in a bath. Pressures are scaled (1/s), and all
+    but the last are over the ambient pressure.
+    """
+    if kind == "symmetry":
+        return np.zeros_like(pressure), np.zeros_like(pressure)
+    if kind == "oil-bath":
+        return conductance * pressure, conductance
+    if kind == "groove":
+        return conductance * (pressure - groove), conductance
+    out, slope = _free_to_air(pressure, conductance, length, STEEPNESS / ambient)
+    return (1.0 - bathed) * out + bathed * conductance * pressure, (1.0 - bathed) * slope + bathed * conductance
+
+
+def _free_to_air(pressure: Array, conductance: Array, length: Array, steepness: float) -> tuple[Array, Array]:
+    """conductance (p - p_edge) = a exp(b p_edge) length, (4.36) and (4.37), solved by Wright's omega function."""
+    omega = wrightomega(np.log(PREFACTOR * steepness * length / conductance) + steepness * pressure)
+    return conductance / steepness * omega, conductance * omega / (1.0 + omega)
+
+
+class Spread(NamedTuple):
+    """What goes from cells to the next ones, and its derivatives by the unknowns of both."""
+
+    flow: Array
+    by_own: Array
+    by_next: Array
+
+
+class Spreads(NamedTuple):
+    """Spread around (m, k) through the face after each cell, along (m, k - 1), and out at the ends, near and far (m,)
+    each, where the next cell is the oil there."""
+
+    around: Spread
+    along: Spread
+    near: Spread
+    far: Spread
+
+    def net_outflow(self) -> Array:
+        """(m, k) outflow of each cell."""
+        net = self.around.flow - np.roll(self.around.flow, 1, axis=0)
+        net[:, :-1] += self.along.flow
+        net[:, 1:] -= self.along.flow
+        net[:, 0] += self.near.flow
+        net[:, -1] += self.far.flow
+        return np.asarray(net)
+
+    def created(self, fixed: NDArray[np.bool_]) -> float:
+        """What comes into the film from where the oil fraction is given: the ends, and the `fixed` cells (m, k)."""
+        return float(self.net_outflow()[fixed].sum() - self.near.flow.sum() - self.far.flow.sum())
+
+
+def spreads(section: Section, grid: VolumeGrid, motion: Motion, state: CellState) -> Spreads:
+    """The diffusion of a film with such a term."""
+    length, along = diffusing(section, grid)
+    reach = 0.5 * GAMMA * length * abs(motion.omega)
+    face, centre = (gap_on(section, motion, phi, grid.height) for phi in (grid.phi[1:], grid.centre))
+    edges = gap_on(section, motion, grid.centre, grid.z)
+    dphi, dz = np.diff(grid.phi)[:, None], np.diff(grid.z)
+    open_around, open_along = (
+        np.where(distance > 0.0, size / np.maximum(distance, NO_DISTANCE), 0.0)
+        for size, distance in ((dz, grid.around), (along * dphi, grid.along))
+    )
+    layers = np.stack([state.fraction, state.pressure, state.fraction_slope, state.pressure_slope])
+    beyond = np.zeros((4, grid.shape[0]))
+    beyond[0] = 1.0
+    groove = beyond.copy()
+    groove[1] = section.far_pressure / section.pressure_scale
+    near, far = end_reaches(grid.height, section.seals)
+    free = ~grid.fixed
+    ends = (
+        along * dphi[:, 0] * _full(section, grid, edge) * reach_out * free[:, last]
+        for edge, reach_out, last in ((section.near, near, 0), (section.far, far, -1))
+    )
+    at_near, at_far = ends
+    return Spreads(
+        _spread(layers, np.roll(layers, -1, axis=1), face, open_around, reach),
+        _spread(layers[:, :, :-1], layers[:, :, 1:], edges[:, 1:-1], open_along, reach),
+        _spread(layers[:, :, 0], beyond, centre[:, 0], at_near, reach),
+        _spread(layers[:, :, -1], groove if section.far == "groove" else beyond, centre[:, -1], at_far, reach),
+    )
+
+
+def _full(section: Section, grid: VolumeGrid, edge: str) -> Array:
+    """(m,) share of an end beyond which there is oil."""
+    if edge == "free-to-air":
+        return bathed(section, grid.phi)
+    return np.full(grid.shape[0], 0.0 if edge == "symmetry" else 1.0)
+
+
+def _spread(own: Array, other: Array, gap: Array, opened: Array, reach: float) -> Spread:
+    """own, other: (4, ...) oil fractions, pressures, their slopes; opened: conductances; reach: gamma L omega/2."""
+    (t, p, by_t, by_p), (t_n, p_n, by_t_n, by_p_n) = own, other
+    by_t, by_t_n = (np.where(each < 1.0, slope, 0.0) for each, slope in ((t, by_t), (t_n, by_t_n)))
+    fall, drop = np.minimum(t, 1.0) - np.minimum(t_n, 1.0), p - p_n
+    tangent = np.divide(by_t, by_p, out=np.zeros_like(by_t), where=by_p > 0.0)
+    chord = np.divide(fall, drop, out=np.zeros_like(fall), where=drop != 0.0)
+    steep = np.where(drop != 0.0, np.maximum(chord, 0.0), tangent)
+    peclet = reach / (GAMMA * gap**2) * steep
+    root = np.hypot(PECLET, peclet)
+    share, turn, size = peclet / root, peclet * PECLET**2 / root**3, opened * reach * gap
+    return Spread(
+        size * share * fall,
+        size * (share * by_t + turn * (by_t - steep * by_p)),
+        -size * (share * by_t_n + turn * (by_t_n - steep * by_p_n)),
+    )
 
 
 class EndFlow(NamedTuple):
@@ -96,6 +230,18 @@ def conductances(section: Section, grid: VolumeGrid, motion: Motion) -> Conducta
         rough = section.flow_roughness / section.clearance
         carried = carried + 0.5 * motion.omega * section.shear * rough * shear_flow(face / rough)
     return Conductances(around, along, near, far, carried * dz[None, :], rise)
+
+
+def pressure_flow(x: Array) -> Array:
+    """phi_x: flow that a pressure drives, over that between smooth surfaces."""
+    return np.asarray(1.0 - DEPTH * np.exp(-RATE * x))
+
+
+def shear_flow(x: Array) -> Array:
+    """Phi_s: (2 / U sigma) times the flow that a rough surface with the speed U carries in addition to U h / 2."""
+    near = np.minimum(x, FAR)
+    factor = A * near**B * np.exp(-C * near + D * near**2)
+    return np.asarray(factor * np.exp(-FADES * (x - near)))
 
 
 def rough_share(section: Section, gap: Array) -> Array | float:
@@ -228,3 +374,37 @@ def with_spread(stencil: Stencil, spread: Spreads, free: NDArray[np.bool_]) -> S
         below=stencil.below + free * below,
         above=stencil.above + free * above,
     )
+
+
+def oil_paths(balances: CellBalances, pressure: Array, fraction: Array) -> OilPaths:
+    """The flows of oil by where they begin, of cells with pressures and oil fractions (m, k).
+
+    Where surfaces carry more out of a cell than into the next one, which is an opening in part, the opening takes the
+    difference, or gives it.
+    """
+    fluxes, _, _ = balances.fluxes(pressure, fraction)
+    share = balances.grid.share
+    leaves = fluxes.around + share * fluxes.carried
+    enters = fluxes.around + np.roll(share, -1, axis=0) * fluxes.carried
+    shared = np.sign(leaves) * np.where(leaves * enters > 0.0, np.minimum(np.abs(leaves), np.abs(enters)), 0.0)
+    onward, backward = np.maximum(shared, 0.0), np.maximum(-shared, 0.0)
+    upward, downward = np.maximum(fluxes.along, 0.0), np.maximum(-fluxes.along, 0.0)
+    out = onward + np.roll(backward, 1, axis=0)
+    out[:, :-1] += upward
+    out[:, 1:] += downward
+    given = np.zeros_like(out)
+    outside = [leaves - shared, -np.roll(enters - shared, 1, axis=0), fluxes.excess]
+    for at, flow in ((0, fluxes.near), (-1, fluxes.far)):
+        outside.append(np.zeros_like(out))
+        outside[-1][:, at] = flow
+    for flow in outside:
+        out += np.maximum(flow, 0.0)
+        given += np.maximum(-flow, 0.0)
+    return OilPaths(onward, backward, upward, downward, out, given)
+
+
+def path_layers(paths: OilPaths, layers: Array) -> None:
+    """The layers of the paths of carry.py (PATHS, m, k) <- paths in array notation."""
+    layers[UPWARD:OUT, :, -1] = 0.0
+    layers[UPWARD, :, :-1], layers[DOWNWARD, :, :-1] = paths.upward, paths.downward
+    layers[ONWARD], layers[BACKWARD], layers[OUT], layers[GIVEN] = paths.onward, paths.backward, paths.out, paths.given
