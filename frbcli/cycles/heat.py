@@ -28,8 +28,8 @@ from frbcli.cycles.method.equilibria import EquationsOf, MachineCourse
 from frbcli.cycles.method.machine import Loads, Machine, film_loads, make_machine, transfer
 from frbcli.equilibrium.resting import RestingPosition
 from frbcli.equilibrium.static_machine import WarmMachines
+from frbcli.film.cells.mean_film import MeanEndFlow, mean_end_flows
 from frbcli.film.kinds.contract import drag_factor
-from frbcli.film.mean_outflow import MeanEndFlow, mean_end_flows
 from frbcli.film.rectangles.end_flow import EndFlow, end_flow
 from frbcli.rotor.loads import largest_first
 from frbcli.scene.films import film_places

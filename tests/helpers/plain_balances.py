@@ -23,7 +23,7 @@ from frbcli.film.cells.gas.carry import BACKWARD, DOWNWARD, GIVEN, ONWARD, OUT, 
 from frbcli.film.cells.mesh.bores import bathed
 from frbcli.film.cells.mesh.grid import VolumeGrid
 from frbcli.film.gap import Edge, Section, gap_height
-from frbcli.film.roughness.flow_factors import DEPTH, FADES, FAR, RATE, A, B, C, D
+from frbcli.film.roughness.asperities import DEPTH, FADES, FAR, RATE, A, B, C, D
 from frbcli.solve.state import State
 
 

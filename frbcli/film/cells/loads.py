@@ -12,7 +12,7 @@ from frbcli.arrays import Array
 from frbcli.film.cavitation.law import FRONTS
 from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution, gap_on
 from frbcli.film.parabola import summit
-from frbcli.film.roughness.flow_factors import shear_stress
+from frbcli.film.roughness.asperities import shear_stress
 
 CavitationFactor = Literal["none", "global", "local"]
 

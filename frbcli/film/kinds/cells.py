@@ -38,12 +38,12 @@ from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution, refilled,
 from frbcli.film.cells.gas.balance import Carried, with_own_gas
 from frbcli.film.cells.linearised import film_at, linear_film, lying, steady_force, steady_solution
 from frbcli.film.cells.loads import CavitationFactor, force, loads, shear_weights
+from frbcli.film.cells.mean_film import MeanEndFlow, mean_end_flow, mean_film
 from frbcli.film.cells.mesh.grid import run_grid
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import FINER
 from frbcli.film.kinds.contract import Compared, Films, LinearOf
 from frbcli.film.mean_fields import MeanFilm
-from frbcli.film.mean_outflow import MeanEndFlow, mean_end_flow
 from frbcli.film.rectangles.end_flow import EndFlow
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.rectangles.film_force import FilmData
@@ -319,7 +319,6 @@ class CellFilms(VolumeKind):
 
     def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
         """See Films.smooth: as the mean over the angle of openings that turn."""
-        from frbcli.film.cells.mean_film import mean_film  # with the solver of cells, which takes long to load
 
         means: list[FilmData] = []
         for i, film in enumerate(self.own):

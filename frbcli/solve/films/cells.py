@@ -48,8 +48,7 @@ from frbcli.film.cells.data import (
 )
 from frbcli.film.cells.gas.carry import store_gas_rates, take_gas_along
 from frbcli.film.roughness.contact import stress_factor
-from frbcli.solve.films.cell_steps import oil_fraction
-from frbcli.solve.films.fillings import follow_filling
+from frbcli.solve.films.cell_steps import follow_filling, oil_fraction
 from frbcli.solve.stage.equations import FilmMotion
 
 # The cells balance as they are, and follow the journal by older derivatives, or by current ones; or they will balance

@@ -18,17 +18,25 @@ from frbcli.film.cells.loads import FilmLoads, loads
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
 from frbcli.film.roughness.asperities import (
+    CUT,
     FLAT,
     LAST,
+    LAST_STRESS,
     Asperities,
     elastic_summits,
     rub,
+    shear_stress,
     summit_pressure,
     touch,
     touching_summits,
 )
-from frbcli.film.roughness.contact import Rubbing, flowing_cube, rough_flow, sheared_gap, stress_factor
-from frbcli.film.roughness.flow_factors import CUT, LAST_STRESS, shear_stress
+from frbcli.film.roughness.contact import (
+    Rubbing,
+    flowing_cube,
+    rough_flow,
+    sheared_gap,
+    stress_factor,
+)
 
 SIGMA = 0.03  # over the clearance
 GAPS = (0.5, 0.9, 1.0, 2.0, 2.99, 3.01, 4.9, 5.1, 8.9, 9.1, 30.0)
