@@ -47,15 +47,17 @@ class Hole:
     """A bore or pocket, at a gauge pressure in Pa.
 
     position, axial: of its middle, phi in rad and m from the end z = 0; half_angle, half_width: half extents in rad
-    and m; round: an ellipse in the developed gap, else a rectangle.
+    and m; round: an ellipse in the developed gap, else a rectangle; through: it goes through the body around the film,
+    else it is a recess.
     """
 
     position: float
     axial: float
     half_angle: float
     half_width: float
-    pressure: float
-    round: bool
+    pressure: float = 0.0
+    round: bool = False
+    through: bool = False
 
 
 class ShellProfile(ABC):
