@@ -1,9 +1,10 @@
 """The oil balance of every cell (3.9), (4.31) on finite volumes in array notation, to which tests hold the kernels:
-flows through faces, storage, and its derivatives; flows of oil by where they begin.
+flows through faces and storage; flows of oil by where they begin.
 
 Lengths are scaled by R and b, pressures by 12 eta / psi^2: a flow is an area times a rate, in 1/s.
 """
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -18,13 +19,15 @@ from frbcli.film.cells.balance.ends import CHANNELS_NET, ENDS_NET, SUPPLY_NET
 from frbcli.film.cells.balance.states import UPWIND
 from frbcli.film.cells.data import NO_DISTANCE, PASSED, diffusing, end_reaches
 from frbcli.film.cells.film import Motion, Storage, gap_on
-from frbcli.film.cells.gas.balance import OilPaths
+from frbcli.film.cells.gas.balance import OilPaths, _apart
 from frbcli.film.cells.gas.carry import BACKWARD, DOWNWARD, GIVEN, ONWARD, OUT, UPWARD
 from frbcli.film.cells.mesh.bores import bathed
 from frbcli.film.cells.mesh.grid import VolumeGrid
 from frbcli.film.gap import Edge, Section, gap_height
 from frbcli.film.roughness.asperities import DEPTH, FADES, FAR, RATE, A, B, C, D
 from frbcli.solve.state import State
+
+STEP = 1e-6  # of w
 
 
 def net_flow(state: State, film: int) -> float:
@@ -33,71 +36,46 @@ def net_flow(state: State, film: int) -> float:
     return float(passed[SUPPLY_NET] - passed[ENDS_NET] + passed[CHANNELS_NET])
 
 
-def limited(a: Array, b: Array) -> tuple[Array, Array, Array]:
-    """L and its derivatives by a and b, in array notation."""
-    smooth = a * b > 0.0
-    size = np.where(smooth, a * a + b * b, 1.0)
-    rise = a * b * (a + b)
-    terms = rise, b * (2.0 * a + b) - 2.0 * a * rise / size, a * (a + 2.0 * b) - 2.0 * b * rise / size
-    value, by_a, by_b = (np.where(smooth, 0.5 * one / size, 0.0) for one in terms)
-    return value, by_a, by_b
+def limited(a: Array, b: Array) -> Array:
+    """L in array notation."""
+    return np.where(a * b > 0.0, 0.5 * a * b * (a + b) / np.maximum(a * a + b * b, np.finfo(float).tiny), 0.0)
 
 
 def end_outflow(
     kind: Edge, pressure: Array, conductance: Array, length: Array, groove: float, ambient: float, bathed: Array
-) -> tuple[Array, Array]:
-    """Outflow of the last cells (n,) through an end and its derivative by their pressure.
+) -> Array:
+    """Outflow of the last cells (n,) through an end.
 
     pressure: of the cells; conductance: from their middle to the end; length: of their share of the end, each (n,);
     groove: pressure in a groove at this end; ambient: absolute ambient pressure; bathed: (n,) share of a free end that
-    lies in a bath. Pressures are scaled (1/s), and all
-    but the last are over the ambient pressure.
-    """
+    lies in a bath. Pressures are scaled (1/s), and all but the last are over the ambient pressure. """
     if kind == "symmetry":
-        return np.zeros_like(pressure), np.zeros_like(pressure)
-    if kind == "oil-bath":
-        return conductance * pressure, conductance
-    if kind == "groove":
-        return conductance * (pressure - groove), conductance
-    out, slope = _free_to_air(pressure, conductance, length, STEEPNESS / ambient)
-    return (1.0 - bathed) * out + bathed * conductance * pressure, (1.0 - bathed) * slope + bathed * conductance
-
-
-def _free_to_air(pressure: Array, conductance: Array, length: Array, steepness: float) -> tuple[Array, Array]:
-    """conductance (p - p_edge) = a exp(b p_edge) length, (4.36) and (4.37), solved by Wright's omega function."""
+        return np.zeros_like(pressure)
+    if kind in ("oil-bath", "groove"):
+        return conductance * (pressure - (groove if kind == "groove" else 0.0))
+    # conductance (p - p_edge) = a exp(b p_edge) length, (4.36) and (4.37)
+    steepness = STEEPNESS / ambient
     omega = wrightomega(np.log(PREFACTOR * steepness * length / conductance) + steepness * pressure)
-    return conductance / steepness * omega, conductance * omega / (1.0 + omega)
-
-
-class Spread(NamedTuple):
-    """What goes from cells to the next ones, and its derivatives by the unknowns of both."""
-
-    flow: Array
-    by_own: Array
-    by_next: Array
+    return conductance * ((1.0 - bathed) * omega / steepness + bathed * pressure)
 
 
 class Spreads(NamedTuple):
     """Spread around (m, k) through the face after each cell, along (m, k - 1), and out at the ends, near and far (m,)
     each, where the next cell is the oil there."""
 
-    around: Spread
-    along: Spread
-    near: Spread
-    far: Spread
+    around: Array
+    along: Array
+    near: Array
+    far: Array
 
     def net_outflow(self) -> Array:
         """(m, k) outflow of each cell."""
-        net = self.around.flow - np.roll(self.around.flow, 1, axis=0)
-        net[:, :-1] += self.along.flow
-        net[:, 1:] -= self.along.flow
-        net[:, 0] += self.near.flow
-        net[:, -1] += self.far.flow
-        return np.asarray(net)
+        nothing = np.zeros_like(self.around)
+        return Fluxes(self.around, nothing, nothing, self.along, self.near, self.far).net_outflow(nothing)
 
     def created(self, fixed: NDArray[np.bool_]) -> float:
         """What comes into the film from where the oil fraction is given: the ends, and the `fixed` cells (m, k)."""
-        return float(self.net_outflow()[fixed].sum() - self.near.flow.sum() - self.far.flow.sum())
+        return float(self.net_outflow()[fixed].sum() - self.near.sum() - self.far.sum())
 
 
 def spreads(section: Section, grid: VolumeGrid, motion: Motion, state: CellState) -> Spreads:
@@ -138,30 +116,15 @@ def _full(section: Section, grid: VolumeGrid, edge: str) -> Array:
     return np.full(grid.shape[0], 0.0 if edge == "symmetry" else 1.0)
 
 
-def _spread(own: Array, other: Array, gap: Array, opened: Array, reach: float) -> Spread:
+def _spread(own: Array, other: Array, gap: Array, opened: Array, reach: float) -> Array:
     """own, other: (4, ...) oil fractions, pressures, their slopes; opened: conductances; reach: gamma L omega/2."""
-    (t, p, by_t, by_p), (t_n, p_n, by_t_n, by_p_n) = own, other
-    by_t, by_t_n = (np.where(each < 1.0, slope, 0.0) for each, slope in ((t, by_t), (t_n, by_t_n)))
+    (t, p, by_t, by_p), (t_n, p_n, _, _) = own, other
     fall, drop = np.minimum(t, 1.0) - np.minimum(t_n, 1.0), p - p_n
-    tangent = np.divide(by_t, by_p, out=np.zeros_like(by_t), where=by_p > 0.0)
+    tangent = np.divide(by_t, by_p, out=np.zeros_like(by_t), where=(by_p > 0.0) & (t < 1.0))
     chord = np.divide(fall, drop, out=np.zeros_like(fall), where=drop != 0.0)
     steep = np.where(drop != 0.0, np.maximum(chord, 0.0), tangent)
     peclet = reach / (GAMMA * gap**2) * steep
-    root = np.hypot(PECLET, peclet)
-    share, turn, size = peclet / root, peclet * PECLET**2 / root**3, opened * reach * gap
-    return Spread(
-        size * share * fall,
-        size * (share * by_t + turn * (by_t - steep * by_p)),
-        -size * (share * by_t_n + turn * (by_t_n - steep * by_p_n)),
-    )
-
-
-class EndFlow(NamedTuple):
-    """Outflow (m,) of the last cells through an end, its derivatives (m,) by their pressure and their neighbours'."""
-
-    out: Array
-    by_last: Array
-    by_next: Array
+    return opened * reach * gap * peclet / np.hypot(PECLET, peclet) * fall
 
 
 class Conductances(NamedTuple):
@@ -175,16 +138,6 @@ class Conductances(NamedTuple):
     far: Array
     carried: Array
     rise: Array
-
-
-class Stencil(NamedTuple):
-    """Derivatives (m, k) of each cell's balance by w of the cell, and of those before, behind, below and above it."""
-
-    centre: Array
-    before: Array
-    behind: Array
-    below: Array
-    above: Array
 
 
 class Fluxes(NamedTuple):
@@ -258,122 +211,81 @@ class CellBalances:
         self.before = np.full(grid.shape, UPWIND) if before is None else before
         self.conductances = conductances(section, grid, motion)
 
-    def fluxes(self, pressure: Array, theta: Array) -> tuple[Fluxes, EndFlow, EndFlow]:
-        """Flows for pressures and oil fractions (m, k), and those at the ends with their derivatives.
+    def fluxes(self, pressure: Array, theta: Array) -> Fluxes:
+        """Flows for pressures and oil fractions (m, k).
 
         The surfaces carry the oil of a part-filled film with the limited oil fraction of states.py, what a full film
         is compressed by as it is at the face (second order).
         """
-        c = self.conductances
+        c, section = self.conductances, self.section
         packed = np.maximum(theta - 1.0, 0.0)
-        loose, _, _ = self._at_faces(theta - packed)
-        carried = c.carried * (loose + 0.5 * (packed + np.roll(packed, -1, axis=0)))
+        carried = c.carried * (self._at_faces(theta - packed) + 0.5 * (packed + np.roll(packed, -1, axis=0)))
         around = c.around * (pressure - np.roll(pressure, -1, axis=0))
         along = c.along * (pressure[:, :-1] - pressure[:, 1:])
-        first, last = end_slopes(self.grid.height, self.section.seals)
-        groove = self.section.far_pressure / self.section.pressure_scale if self.section.far == "groove" else 0.0
-        inwards = slice(None, None, -1)
-        near = self._end(self.section.near, pressure, self.grid.fixed, c.near, 0.0, first)
-        far = self._end(
-            self.section.far, pressure[:, inwards], self.grid.fixed[:, inwards], c.far, groove, last
-        )
-        return Fluxes(around, carried, c.rise * theta, along, near.out, far.out), near, far
+        first, last = end_slopes(self.grid.height, section.seals)
+        groove = section.far_pressure / section.pressure_scale if section.far == "groove" else 0.0
+        near = self._end(section.near, pressure, self.grid.fixed[:, 0], c.near, 0.0, first)
+        far = self._end(section.far, pressure[:, ::-1], self.grid.fixed[:, -1], c.far, groove, last)
+        return Fluxes(around, carried, c.rise * theta, along, near, far)
 
-    def _at_faces(self, loose: Array) -> tuple[Array, Array, Array]:
-        """(m, k) oil fraction at the face after each cell and its derivatives by the fractions of this cell and the
-        next.
+    def _at_faces(self, loose: Array) -> Array:
+        """(m, k) oil fraction at the face after each cell.
 
         loose: (m, k) oil fractions, full at most. With artificial diffusion it is the mean of both."""
+        after = np.roll(loose, -1, axis=0)
         if self.section.diffusion is not None:
-            half = np.full_like(loose, 0.5)
-            return half * (loose + np.roll(loose, -1, axis=0)), half, half
-        forward, after = self.motion.omega >= 0.0, np.roll(loose, -1, axis=0)
-        upstream, downstream = (loose, after) if forward else (after, loose)
-        across = downstream - upstream
-        more, by_before, by_across = limited(upstream - self.before, across)
-        by_upstream = 1.0 + by_before - by_across
-        return upstream + more, *((by_upstream, by_across) if forward else (by_across, by_upstream))
+            return 0.5 * (loose + after)
+        upstream, downstream = (loose, after) if self.motion.omega >= 0.0 else (after, loose)
+        return upstream + limited(upstream - self.before, downstream - upstream)
 
     def _end(
-        self, kind: str, pressure: Array, fixed: NDArray[np.bool_], conductance: Array, groove: float, slope: EndSlope
-    ) -> EndFlow:
-        """pressure, fixed: (m, k) from this end on. A parabola through the last two cells bends the pressure there."""
+        self, kind: Edge, pressure: Array, fixed: Array, conductance: Array, groove: float, slope: EndSlope
+    ) -> Array:
+        """pressure (m, k): from this end on; fixed: (m,). A parabola through the last two cells bends the pressure
+        there."""
         ambient = self.section.ambient_pressure / self.section.pressure_scale
         last, beyond = pressure[:, 0], pressure[:, min(1, pressure.shape[1] - 1)]
-        rise = last - groove
-        bend = slope.bend * (last - beyond)
+        rise, bend = last - groove, slope.bend * (last - beyond)
         smooth = np.abs(bend) <= BEND * np.abs(rise)
-        side = BEND * np.sign(bend) * np.sign(rise)
-        felt = last + np.where(smooth, bend, side * rise)
-        out, by_felt = end_outflow(
+        felt = last + np.where(smooth, bend, BEND * np.sign(bend) * np.abs(rise))
+        out = end_outflow(
             kind, felt, conductance, np.diff(self.grid.phi), groove, ambient, bathed(self.section, self.grid.phi)
         )
-        by_felt = np.where(fixed[:, 0], 0.0, by_felt)  # a groove or hole that reaches the end feeds the film only
-        by_last = by_felt * np.where(smooth, 1.0 + slope.bend, 1.0 + side)
-        by_next = by_felt * np.where(smooth, -slope.bend, 0.0)
-        return EndFlow(np.where(fixed[:, 0], 0.0, out), by_last, by_next)
+        return np.where(fixed, 0.0, out)  # a groove or hole that reaches the end feeds the film only
 
-    def residual(self, state: CellState, storage: Storage) -> tuple[Array, Stencil]:
-        """Residual of each cell (m, k), and the stencil of derivatives by w.
+    def residual(self, state: CellState, storage: Storage) -> Array:
+        """Residual of each cell (m, k).
 
         state: of the law with arrays (m, k), whose slopes are zero and whose values are given in fixed cells.
         """
-        area, fixed = self.grid.area, self.grid.fixed
-        fluxes, near, far = self.fluxes(state.pressure, state.fraction)
-        kept = storage.factor * state.fraction
-        residual = fluxes.net_outflow(self.grid.share) + area * (kept - storage.past - state.source)
-        stencil = self._stencil(state, storage, near, far)
+        net = self.fluxes(state.pressure, state.fraction).net_outflow(self.grid.share)
         if self.section.diffusion is not None:
-            spread = spreads(self.section, self.grid, self.motion, state)
-            residual, stencil = residual + spread.net_outflow(), with_spread(stencil, spread, ~fixed)
-        return np.where(fixed, 0.0, residual), stencil
+            net += spreads(self.section, self.grid, self.motion, state).net_outflow()
+        kept = storage.factor * state.fraction - storage.past - state.source
+        return np.where(self.grid.fixed, 0.0, net + self.grid.area * kept)
 
-    def _stencil(self, state: CellState, storage: Storage, near: EndFlow, far: EndFlow) -> Stencil:
-        c, p_w, t_w = self.conductances, state.pressure_slope, state.fraction_slope
-        packed, share = state.fraction > 1.0, self.grid.share
-        _, own, next_ = self._at_faces(np.minimum(state.fraction, 1.0))
-        by_own, by_next = c.around * p_w, c.around * np.roll(p_w, -1, axis=0)  # through the face after each cell
-        own = c.carried * np.where(packed, 0.5, own) * t_w
-        other = c.carried * np.where(np.roll(packed, -1, axis=0), 0.5, next_) * np.roll(t_w, -1, axis=0)
-        low, high = c.along * p_w[:, :-1], c.along * p_w[:, 1:]
-        centre = by_own + share * own + np.roll(by_next, 1, axis=0) - share * np.roll(other, 1, axis=0)
-        centre += c.rise * t_w + self.grid.area * (storage.factor * t_w - state.source_slope)
-        centre[:, :-1] += low
-        centre[:, 1:] += high
-        centre[:, 0] += near.by_last * p_w[:, 0]
-        centre[:, -1] += far.by_last * p_w[:, -1]
-        below, above = np.zeros_like(p_w), np.zeros_like(p_w)
-        below[:, 1:], above[:, :-1] = -low, -high
-        if p_w.shape[1] > 1:
-            above[:, 0] += near.by_next * p_w[:, 1]
-            below[:, -1] += far.by_next * p_w[:, -2]
-        free = ~self.grid.fixed
-        return Stencil(
-            centre=np.where(free, centre, 1.0),
-            before=free * (-np.roll(by_own, 1, axis=0) - share * np.roll(own, 1, axis=0)),
-            behind=free * (share * other - by_next),
-            below=free * below,
-            above=free * above,
-        )
+    def stencil(self, state: CellState, storage: Storage) -> Array:
+        """(5, m, k) derivatives of each cell's residual by w of the cell, and of those before, behind, below and above
+        it, as differences, in which the states follow w by their slopes."""
+        found = np.zeros((5, *self.grid.shape))
+        for cells in _apart(self.grid.shape):
 
+            def moved(step: float, cells: NDArray[np.bool_] = cells) -> Array:
+                move = step * cells
+                at = replace(
+                    state,
+                    pressure=state.pressure + move * state.pressure_slope,
+                    fraction=state.fraction + move * state.fraction_slope,
+                    source=state.source + move * state.source_slope,
+                )
+                return self.residual(at, storage)
 
-def with_spread(stencil: Stencil, spread: Spreads, free: NDArray[np.bool_]) -> Stencil:
-    """The stencil with the derivatives of the artificial diffusion; free: (m, k) cells that have a balance."""
-    around, along = spread.around, spread.along
-    centre = around.by_own - np.roll(around.by_next, 1, axis=0)
-    centre[:, :-1] += along.by_own
-    centre[:, 1:] -= along.by_next
-    centre[:, 0] += spread.near.by_own
-    centre[:, -1] += spread.far.by_own
-    below, above = np.zeros_like(centre), np.zeros_like(centre)
-    below[:, 1:], above[:, :-1] = -along.by_own, along.by_next
-    return Stencil(
-        centre=stencil.centre + free * centre,
-        before=stencil.before - free * np.roll(around.by_own, 1, axis=0),
-        behind=stencil.behind + free * around.by_next,
-        below=stencil.below + free * below,
-        above=stencil.above + free * above,
-    )
+            slope, inside = (moved(STEP) - moved(-STEP)) / (2.0 * STEP), np.pad(cells, ((0, 0), (1, 1)))
+            around = cells, np.roll(cells, 1, axis=0), np.roll(cells, -1, axis=0), inside[:, :-2], inside[:, 2:]
+            for entry, here in enumerate(around):
+                found[entry][here] = slope[here]
+        found[0][self.grid.fixed] = 1.0
+        return found
 
 
 def oil_paths(balances: CellBalances, pressure: Array, fraction: Array) -> OilPaths:
@@ -382,7 +294,7 @@ def oil_paths(balances: CellBalances, pressure: Array, fraction: Array) -> OilPa
     Where surfaces carry more out of a cell than into the next one, which is an opening in part, the opening takes the
     difference, or gives it.
     """
-    fluxes, _, _ = balances.fluxes(pressure, fraction)
+    fluxes = balances.fluxes(pressure, fraction)
     share = balances.grid.share
     leaves = fluxes.around + share * fluxes.carried
     enters = fluxes.around + np.roll(share, -1, axis=0) * fluxes.carried

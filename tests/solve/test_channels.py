@@ -113,9 +113,8 @@ def _fed(film: VolumeFilm, feed_holes: float, groove: float) -> float:
     solution = FilmSolver(there).steady(motion)
     flow = solution.flows.supply
     if section.far == "groove":  # which supplies oil as well
-        fluxes, _, _ = CellBalances(there.section, there.grid, motion).fluxes(
-            solution.state.pressure, solution.state.fraction
-        )
+        state = solution.state
+        fluxes = CellBalances(there.section, there.grid, motion).fluxes(state.pressure, state.fraction)
         flow += float(fluxes.far.sum())
     return flow * section.copies * section.radius * section.width * section.clearance
 
