@@ -14,9 +14,8 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.cells.balance.ends import opens_far, side_flow
-from frbcli.film.cells.balance.grid_motion import level
 from frbcli.film.cells.balance.states import PRESSURE, STATES
-from frbcli.film.cells.data import Records, VolumeFilms
+from frbcli.film.cells.data import Records, VolumeFilms, level
 from frbcli.film.cells.film import Motion, VolumeFilm
 from frbcli.film.cells.mesh.grid import force_weights
 from frbcli.film.gap import LARGEST_ECCENTRICITY

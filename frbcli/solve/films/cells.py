@@ -18,7 +18,6 @@ from frbcli.film.cavitation.law import ABOVE_KINK
 from frbcli.film.cells.balance.balances import balances
 from frbcli.film.cells.balance.ends import CHANNELS_NET, CREATED, ENDS_NET, SUPPLY_NET
 from frbcli.film.cells.balance.faces import film_loads
-from frbcli.film.cells.balance.grid_motion import GridMotion, gap_along, level
 from frbcli.film.cells.balance.newton_step import damp, imbalance, store_rates
 from frbcli.film.cells.balance.states import (
     FRACTION,
@@ -43,8 +42,11 @@ from frbcli.film.cells.data import (
     SIDES,
     SIN,
     UNKNOWN,
+    GridMotion,
     Records,
     VolumeFilms,
+    gap_along,
+    level,
 )
 from frbcli.film.cells.gas.carry import store_gas_rates, take_gas_along
 from frbcli.film.roughness.contact import stress_factor

@@ -22,7 +22,6 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
-from frbcli.film.cells.balance.grid_motion import GridMotion, add_by_motion, gap_along
 from frbcli.film.cells.balance.states import FRACTION, FRACTION_SLOPE, PRESSURE, PRESSURE_SLOPE
 from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE
 from frbcli.film.cells.data import (
@@ -44,6 +43,9 @@ from frbcli.film.cells.data import (
     MIDDLES,
     SIN,
     UNKNOWN,
+    GridMotion,
+    add_by_motion,
+    gap_along,
 )
 
 GAMMA, PECLET = 0.5, 3.0  # of (4.42) and (4.43)

@@ -12,7 +12,6 @@ from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import wright_omega
 from frbcli.film.cells.balance.boundaries import BEND, PREFACTOR, STEEPNESS
-from frbcli.film.cells.balance.grid_motion import GridMotion, add_by_motion, gap_along, seen_by_grid
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, STATES, rests
 from frbcli.film.cells.block_cyclic import ABOVE, BELOW, CENTRE
 from frbcli.film.cells.data import (
@@ -27,8 +26,12 @@ from frbcli.film.cells.data import (
     LENGTH,
     SIN,
     UNKNOWN,
+    GridMotion,
     VolumeFilms,
+    add_by_motion,
     film_alone,
+    gap_along,
+    seen_by_grid,
 )
 from frbcli.film.cells.film import Motion, VolumeFilm
 from frbcli.film.roughness.contact import flowing_cube
