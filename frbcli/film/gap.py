@@ -253,9 +253,19 @@ class Section:
         return 12.0 * self.viscosity * (self.radius / self.clearance) ** 2
 
     @property
+    def area(self) -> float:
+        """R b times the number of sections, m^2."""
+        return self.copies * self.radius * self.width
+
+    @property
     def force_scale(self) -> float:
         """R b times pressure_scale times the number of sections, N s, see (3.13)."""
-        return self.copies * self.radius * self.width * self.pressure_scale
+        return self.area * self.pressure_scale
+
+    @property
+    def flow_scale(self) -> float:
+        """R b C times the number of sections, m^3: turns a scaled flow (1/s) of a section into m^3/s of the bearing."""
+        return self.area * self.clearance
 
     @property
     def aspect(self) -> float:

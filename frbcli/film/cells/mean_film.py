@@ -67,9 +67,9 @@ def mean_film(film: VolumeFilm, openings: int, drop: float) -> MeanFilm:
     slopes = CubicSpline(DEPTH_STEP * np.arange(len(eccentricities)), lines, axis=0)(
         DEPTH_STEP * np.arange(len(eccentricities)), 1
     )
-    scale = section.copies * section.radius * section.width * section.pressure_scale
     level = film.scales.cavitation if film.law.clips else float(10.0 * np.min(values))
-    return MeanFilm(scale, level, drop, np.ascontiguousarray(np.concatenate([lines, slopes], axis=3)), weights)
+    table = np.ascontiguousarray(np.concatenate([lines, slopes], axis=3))
+    return MeanFilm(section.force_scale, level, drop, table, weights)
 
 
 def _pressure(solver: FilmSolver, d: tuple[float, float], v: Array) -> Array:
@@ -95,9 +95,8 @@ def mean_end_flow(film: VolumeFilm, fields: MeanFilm, data: VolumeFilms, i: int)
     """Mean end flow of film i of `data`."""
     section = film.section
     apart = 2.0 * math.pi / (fields.table.shape[1] * max(len(section.holes), 1))
-    unit = section.copies * section.radius * section.width
     own = data.films[i : i + 1], data.ring[i], data.places[i], data.cells[i]
-    return MeanEndFlow(fields, *own, opens_far(film), apart, unit)
+    return MeanEndFlow(fields, *own, opens_far(film), apart, section.area)
 
 
 @compiled(makes_arrays=True)

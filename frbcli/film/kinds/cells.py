@@ -127,14 +127,10 @@ class VolumeKind(Films):
         if not any(self.remembering):
             return {}
         films = [film for _, film in self.fields_of_films]
-        sections = [film.section for film in films]
-        size = np.array([
-            film.law.keeps_oil * each.copies * each.radius * each.width * each.clearance
-            for film, each in zip(films, sections, strict=True)
-        ])  # fmt: skip
+        size = np.array([film.law.keeps_oil * film.section.flow_scale for film in films])
         came, left = (float(size @ flows[PASSED, :, flow]) for flow in (INFLOW, OUTFLOW))
         passed = {"oil_in_m3": came, "oil_out_m3": left}
-        if any(each.diffusion is not None for each in sections):
+        if any(film.section.diffusion is not None for film in films):
             passed["oil_created_m3"] = float(size @ flows[PASSED, :, CREATED])
         return passed
 
@@ -300,8 +296,7 @@ class CellFilms(VolumeKind):
 
     @property
     def _areas(self) -> Array:
-        sections = [film.section for film in self.own]
-        return np.array([each.copies * each.radius * each.width for each in sections])
+        return np.array([film.section.area for film in self.own])
 
     def changeable(self) -> Self:
         data = self.data

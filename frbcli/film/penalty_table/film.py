@@ -121,14 +121,14 @@ class SourceFilm:
         turn = np.array([[c, s], [-s, c]])
         rate = max(abs(omega), 1.0) if self.relative else 1.0
         at = self.forces(eccentricity, (turn @ w / rate)[None, None, :])[0, 0]
-        force: Array = force_scale(self.section) * rate * turn.T @ at
+        force: Array = self.section.force_scale * rate * turn.T @ at
         return force
 
     def film(self) -> FilmData:
         """The film, tabulated, for the time loop. Raises NotConverged."""
         # A law derived from this one in Python may have other equations with the same numbers.
         table = _kept_table(self) if type(self.law) is Penalty else penalty_table(self)
-        return PenaltyTableFilm(force_scale(self.section), table, self.numbers)
+        return PenaltyTableFilm(self.section.force_scale, table, self.numbers)
 
 
 def penalty_table(film: SourceFilm) -> Array:
@@ -137,11 +137,6 @@ def penalty_table(film: SourceFilm) -> Array:
 
 
 _kept_table = kept_beside(row_forces)(penalty_table)
-
-
-def force_scale(section: Section) -> float:
-    """Turns the integral of P over one section into the force of the whole bearing, N s."""
-    return section.copies * section.radius * section.width * section.pressure_scale
 
 
 def _half(section: Section, along: int) -> tuple[Section, int]:

@@ -203,12 +203,11 @@ def side_flow(
 def outflow(film: VolumeFilm, motion: Motion, pressure: Array, known: VolumeFilms | None = None) -> float:
     """Outflow through the open ends of the whole bearing in m^3/s, or of a land where the lands differ. pressure (m,
     k): scaled gauge pressures of the cells; known: the film as arrays, where its openings are filled in part."""
-    section, data = film.section, known or film_alone(film)
+    data = known or film_alone(film)
     states = np.zeros((STATES, *pressure.shape))
     states[PRESSURE] = pressure
-    unit = section.copies * section.radius * section.width * section.clearance
     own = data.films[0], data.ring[0], data.places[0], data.cells[0]
-    return unit * float(side_flow(*own, states, seen_by_grid(motion), opens_far(film)))
+    return film.section.flow_scale * float(side_flow(*own, states, seen_by_grid(motion), opens_far(film)))
 
 
 def opens_far(film: VolumeFilm) -> bool:
