@@ -239,12 +239,6 @@ def test_modules_that_are_named_are_there() -> None:
     assert missing == []
 
 
-# In array notation what a kernel computes, for readers and for the tests that hold the kernel to it.
-PLAIN = (
-    ("frbcli.film.rectangles.film_force", "solve_plain"),
-    ("frbcli.film.rectangles.short", "short_pressure"),
-    ("frbcli.film.roughness.plain", "plain_touch"),
-)
 Name = tuple[str, str]  # module, name of what it defines
 
 
@@ -356,7 +350,7 @@ def roots() -> list[Name]:
 
 def test_commands_and_public_names_reach_all_that_is_there() -> None:
     modules = dict(map(read, PACKAGE.rglob("*.py")))
-    found = reached(modules, [*roots(), *PLAIN])
+    found = reached(modules, roots())
     unused = [
         f"{here}.{name}"
         for here, module in modules.items()

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, Union, get_args
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Union, get_args
 
 from pydantic import Field
 
@@ -31,18 +31,6 @@ LargestFlow = Annotated[
     Flow | None,
     Field(description="flow limit of the whole bearing, at which the pressure falls"),
 ]
-
-
-class Outline(NamedTuple):
-    """An opening in the developed gap of the whole bearing: phi of its middle, z of its middle, half extents in rad and
-    m. round: an ellipse, else a rectangle; through: it goes through the body around the film, else it is a recess."""
-
-    position: float
-    axial: float
-    half_angle: float
-    half_width: float
-    round: bool = False
-    through: bool = False
 
 
 @dataclass(frozen=True)
@@ -128,8 +116,8 @@ class OilSupply(Model):
         """The feed holes that are channels where they are in a ring."""
         return None
 
-    def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
-        """Its openings in the gap of a bearing, radius and width in m."""
+    def outlines(self, radius: float, width: float) -> tuple[Hole, ...]:
+        """Its openings in the developed gap of a whole bearing, radius and width in m, without their pressure."""
         return ()
 
     def openings(self, radius: float, width: float, ends: Edge, ambient: float) -> Openings:
@@ -141,12 +129,8 @@ class OilSupply(Model):
         return Openings(1, ends, holes=holes)
 
     def holes(self, radius: float, width: float, ambient: float) -> tuple[Hole, ...]:
-        """Its outlines as holes with its pressure."""
-        gauge = self.gauge(ambient)
-        return tuple(
-            Hole(outline.position, outline.axial, outline.half_angle, outline.half_width, gauge, outline.round)
-            for outline in self.outlines(radius, width)
-        )
+        """Its outlines with its pressure."""
+        return tuple(replace(outline, pressure=self.gauge(ambient)) for outline in self.outlines(radius, width))
 
     @property
     def words(self) -> str:
@@ -278,9 +262,9 @@ class CircumferentialGroove(PressureSupply):
     def land_share(self) -> float:
         return 1.0 if self.splits else ONE_LAND
 
-    def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
+    def outlines(self, radius: float, width: float) -> tuple[Hole, ...]:
         """See OilSupply; all around, and as wide as a sketch shows it."""
-        return (Outline(0.0, self.axial_position * width, math.pi, SHOWN * width, through=True),)
+        return (Hole(0.0, self.axial_position * width, math.pi, SHOWN * width, through=True),)
 
     def openings(self, radius: float, width: float, ends: Edge, ambient: float) -> Openings:
         return Openings(2 if self.splits else 1, "groove", self.gauge(ambient))
@@ -312,8 +296,8 @@ class AxialGrooves(SpacedSupply):
     divides: ClassVar[bool] = True
     rectangular: ClassVar[bool] = True
 
-    def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
-        return tuple(Outline(at, 0.5 * width, 0.5 * self.opening_angle, 0.5 * width) for at in self.positions)
+    def outlines(self, radius: float, width: float) -> tuple[Hole, ...]:
+        return tuple(Hole(at, 0.5 * width, 0.5 * self.opening_angle, 0.5 * width) for at in self.positions)
 
     def openings(self, radius: float, width: float, ends: Edge, ambient: float) -> Openings:
         gauge = self.gauge(ambient)
@@ -346,9 +330,9 @@ class Bores(SpacedSupply):
     def channels(self) -> Bores | None:
         return self
 
-    def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
+    def outlines(self, radius: float, width: float) -> tuple[Hole, ...]:
         axial, size = self.axial_position * width, 0.5 * self.diameter
-        return tuple(Outline(at, axial, size / radius, size, round=True, through=True) for at in self.positions)
+        return tuple(Hole(at, axial, size / radius, size, round=True, through=True) for at in self.positions)
 
     @property
     def words(self) -> str:
@@ -384,8 +368,8 @@ class Pocket(PressureSupply):
     ramp: Ramp = 0.0
     flow: LargestFlow = None
 
-    def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
-        return (Outline(self.position, 0.5 * width, 0.5 * self.opening_angle, 0.5 * self.width),)
+    def outlines(self, radius: float, width: float) -> tuple[Hole, ...]:
+        return (Hole(self.position, 0.5 * width, 0.5 * self.opening_angle, 0.5 * self.width),)
 
 
 class AxialSlots(SpacedSupply):
@@ -403,9 +387,9 @@ class AxialSlots(SpacedSupply):
     openings_word: ClassVar[str] = "slots"
     sizes: ClassVar[tuple[str, ...]] = ("length",)
 
-    def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
+    def outlines(self, radius: float, width: float) -> tuple[Hole, ...]:
         half_angle, half_length = 0.5 * self.opening_angle, 0.5 * self.length
-        return tuple(Outline(at, 0.5 * width, half_angle, half_length) for at in self.positions)
+        return tuple(Hole(at, 0.5 * width, half_angle, half_length) for at in self.positions)
 
 
 SUPPLIES: tuple[type[OilSupply], ...] = (

@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from operator import attrgetter, itemgetter
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -43,6 +43,7 @@ class RestingPoint:
     stable: bool
     temperatures_K: Array = field(default_factory=lambda: np.zeros(0))
     end_eccentricity: Array = field(default_factory=lambda: np.zeros(0))
+    kind: ClassVar[str] = ""
 
     @property
     def eccentricity(self) -> Array:
@@ -106,6 +107,7 @@ class UnbalancedWhirl:
     lines: tuple[SpectralLine, ...]
     stable: bool
     temperatures_K: Array = field(default_factory=lambda: np.zeros(0))
+    kind: ClassVar[str] = "locked"
 
 
 @dataclass(frozen=True)
@@ -431,7 +433,7 @@ def diagram_columns(
     journals tilt. """
     value = Column(over, "", "value of the varied key", _number("value"))
     whirl = Column("unbalance", "", "true: whirl with unbalance",
-                   lambda point: True if isinstance(point, UnbalancedWhirl) else None)  # fmt: skip
+                   lambda point: True if point.kind == "locked" else None)  # fmt: skip
     per_film = [
         ("eccentricity_max", "", "largest eccentricity", "eccentricity"),
         ("eccentricity_max_uncertainty", "", "uncertainty of a cycle", ""),
@@ -449,13 +451,13 @@ def diagram_columns(
             SPEED_COLUMN,
             replace(FREQUENCY, value=_number("frequency_Hz")),
             STABLE,
-            Column("kind", "", "of a special point, or `asked`; `locked` of a whirl with unbalance", _kind),
+            Column("kind", "", "of a special point, or `asked`; `locked` of a whirl with unbalance"),
         ),
         *(column for quantity, unit, meaning, at_rest in per_film for film, name in enumerate(films)
           for column in of_point(Column(quantity.replace("temperatures_K", "temperature"), unit, meaning,
-                                        _number(quantity, film, at_rest)), film=name if len(films) > 1 else "")),
+                                        _number(quantity, at_rest, place=film)), film=name if len(films) > 1 else "")),
         *of_point(
-            *(Column(f"ring_speed_{ring}", "Hz", "mean speed of a ring", _number("ring_speeds_Hz", ring))
+            *(Column(f"ring_speed_{ring}", "Hz", "mean speed of a ring", _number("ring_speeds_Hz", place=ring))
               for ring in range(rings)),
             Column("torque", "N m", "mean torque of a cycle against its films",
                    _number("torque_N_m")),
@@ -470,18 +472,12 @@ def diagram_columns(
     )  # fmt: skip
 
 
-def _kind(point: RestingPoint | CyclePoint | UnbalancedWhirl) -> str:
-    if isinstance(point, UnbalancedWhirl):
-        return "locked"
-    return point.kind if isinstance(point, CyclePoint) else ""
-
-
-def _number(name: str, place: int | None = None, at_rest: str = "") -> Callable[[Any], float]:
-    """A number of a point by its name, and place in an array; NaN where the point has none. at_rest: its name in a
-    RestingPoint, if that is another."""
+def _number(*names: str, place: int | None = None) -> Callable[[Any], float]:
+    """A number of a point by the first of its names that the point knows, and place in an array; NaN where the point
+    has none."""
 
     def value(point: Any) -> float:
-        number = getattr(point, at_rest if at_rest and isinstance(point, RestingPoint) else name, None)
+        number = next((getattr(point, name) for name in names if hasattr(point, name)), None)
         if number is None:
             return math.nan
         return float(number if place is None else number[place])
@@ -491,7 +487,7 @@ def _number(name: str, place: int | None = None, at_rest: str = "") -> Callable[
 
 def _amplitude(name: str) -> Callable[[Any], float]:
     def value(point: Any) -> float:
-        lines = point.lines if isinstance(point, UnbalancedWhirl) else ()
-        return next((float(line.amplitude.max()) for line in lines if line.name == name), math.nan)
+        lines = (line for line in getattr(point, "lines", ()) if line.name == name)
+        return next((float(line.amplitude.max()) for line in lines), math.nan)
 
     return value

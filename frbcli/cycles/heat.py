@@ -21,16 +21,15 @@ from numpy.typing import NDArray
 
 from frbcli.arrays import Array, Complex
 from frbcli.case.schema import Case
-from frbcli.compiled import compiled
 from frbcli.cycles.method.balance import Multipliers, harmonics_of, loads_along, motion_along, packed, through
 from frbcli.cycles.method.continuation import Equations, Unreachable
 from frbcli.cycles.method.equilibria import EquationsOf, MachineCourse
 from frbcli.cycles.method.machine import Loads, Machine, film_loads, make_machine, transfer
 from frbcli.equilibrium.resting import RestingPosition
 from frbcli.equilibrium.static_machine import WarmMachines
+from frbcli.film.cells.mean_film import MeanEndFlow, mean_end_flows
 from frbcli.film.kinds.contract import drag_factor
-from frbcli.film.mean_outflow import MeanEndFlow, mean_end_flows
-from frbcli.film.rectangles.end_flow import EndFlow, end_flow
+from frbcli.film.rectangles.end_flow import EndFlow, end_flows
 from frbcli.rotor.loads import largest_first
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.heat import Heat, heat_of
@@ -205,7 +204,7 @@ def _flow(machine: Machine, f: int, end: EndFlow | MeanEndFlow, at: _Moments) ->
     def flows(moved: Array, thicker: float = 1.0) -> Array:
         if isinstance(end, MeanEndFlow):
             return np.asarray(c * mean_end_flows(end, moved, at.total, thicker * scale))
-        return np.asarray(c * _end_flows(end, moved, thicker * scale))
+        return np.asarray(c * end_flows(end, moved, thicker * scale))
 
     slopes = [
         (flows(motions + step * np.eye(4)[i]) - flows(motions - step * np.eye(4)[i])) / (2.0 * step)
@@ -221,15 +220,6 @@ def _flow(machine: Machine, f: int, end: EndFlow | MeanEndFlow, at: _Moments) ->
         by_slip=np.zeros(len(w)),
         by_scale=(thicker - thinner) / (2.0 * NUDGE),
     )
-
-
-@compiled(makes_arrays=True)
-def _end_flows(flow: EndFlow, motions: Array, scale: float) -> Array:
-    """(k,) of end_flow in motions (k, 4) of d and w."""
-    flows = np.empty(motions.shape[0])
-    for i in range(motions.shape[0]):
-        flows[i] = end_flow(flow, motions[i, 0], motions[i, 1], motions[i, 2], motions[i, 3], scale)
-    return flows
 
 
 def _loads_by_scale(machine: Machine, f: int, at: _Moments) -> Array:

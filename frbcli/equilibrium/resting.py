@@ -18,11 +18,10 @@ from numpy.typing import NDArray
 from frbcli.arrays import Array
 from frbcli.equilibrium.ring_speed import dragged_speeds, pin_angles, ring_balance
 from frbcli.errors import NotConverged
-from frbcli.film.contact_gap import ELASTIC_LIMIT
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.parabola import share_within
 from frbcli.film.rectangles.film import FilmForce
-from frbcli.film.roughness.contact import ElasticShell
+from frbcli.film.roughness.contact import ELASTIC_LIMIT, ElasticShell
 from frbcli.rotor.assembly import HeldRotor, LinearRotor, held_rotor, sprung
 from frbcli.rotor.port import pushed, settled
 from frbcli.scene.machine.system import System

@@ -47,15 +47,17 @@ class Hole:
     """A bore or pocket, at a gauge pressure in Pa.
 
     position, axial: of its middle, phi in rad and m from the end z = 0; half_angle, half_width: half extents in rad
-    and m; round: an ellipse in the developed gap, else a rectangle.
+    and m; round: an ellipse in the developed gap, else a rectangle; through: it goes through the body around the film,
+    else it is a recess.
     """
 
     position: float
     axial: float
     half_angle: float
     half_width: float
-    pressure: float
-    round: bool
+    pressure: float = 0.0
+    round: bool = False
+    through: bool = False
 
 
 class ShellProfile(ABC):
@@ -251,9 +253,19 @@ class Section:
         return 12.0 * self.viscosity * (self.radius / self.clearance) ** 2
 
     @property
+    def area(self) -> float:
+        """R b times the number of sections, m^2."""
+        return self.copies * self.radius * self.width
+
+    @property
     def force_scale(self) -> float:
         """R b times pressure_scale times the number of sections, N s, see (3.13)."""
-        return self.copies * self.radius * self.width * self.pressure_scale
+        return self.area * self.pressure_scale
+
+    @property
+    def flow_scale(self) -> float:
+        """R b C times the number of sections, m^3: turns a scaled flow (1/s) of a section into m^3/s of the bearing."""
+        return self.area * self.clearance
 
     @property
     def aspect(self) -> float:

@@ -71,12 +71,10 @@ def eccentricity(
     >>> run = frbcli.read_run("run.h5")  # doctest: +SKIP
     >>> ax = frbcli.draw_eccentricity(run)  # doctest: +SKIP
     """
-    ax = _axes(ax)
-    with _overlaid(ax, label):
-        draw_eccentricity(ax, [run], (), (from_time, to_time), over)
-    finish(ax, over)
-    legend_beside(ax)
-    return ax
+    with _overlaid(ax, label) as axes:
+        draw_eccentricity(axes, [run], (), (from_time, to_time), over)
+        finish(axes, over)
+    return axes
 
 
 def orbit(
@@ -109,12 +107,10 @@ def orbit(
     >>> run = frbcli.read_run("run.h5")  # doctest: +SKIP
     >>> ax = frbcli.draw_orbit(run)  # doctest: +SKIP
     """
-    ax = _axes(ax)
     end = ends(run)[1] if to_time is None else to_time
-    with _overlaid(ax, label):
-        draw_orbits(ax, [run], bearing, (max(end - LAST_s, 0.0) if from_time is None else from_time, end))
-    legend_beside(ax)
-    return ax
+    with _overlaid(ax, label) as axes:
+        draw_orbits(axes, [run], bearing, (max(end - LAST_s, 0.0) if from_time is None else from_time, end))
+    return axes
 
 
 def waterfall(
@@ -188,11 +184,9 @@ def spectrum(
     >>> run = frbcli.read_run("run.h5")  # doctest: +SKIP
     >>> ax = frbcli.draw_spectrum(run, 2.0)  # doctest: +SKIP
     """
-    ax = _axes(ax)
-    with _overlaid(ax, label):
-        draw_spectrum_at(ax, run, time_s, run_spectra(run, signal, window_s, "x"), signal)
-    legend_beside(ax)
-    return ax
+    with _overlaid(ax, label) as axes:
+        draw_spectrum_at(axes, run, time_s, run_spectra(run, signal, window_s, "x"), signal)
+    return axes
 
 
 def ring_speed(run: Run, ax: Axes | None = None, over: Over = "time", label: str = "") -> Axes:
@@ -218,15 +212,13 @@ def ring_speed(run: Run, ax: Axes | None = None, over: Over = "time", label: str
     >>> run = frbcli.read_run("run.h5")  # doctest: +SKIP
     >>> ax = frbcli.draw_ring_speed(run)  # doctest: +SKIP
     """
-    ax = _axes(ax)
     names = [name for name in run.signals if name.startswith("ring_speed")]
     curves = [(name.removesuffix("_Hz").replace("_", " "), [run.signal(name)]) for name in names]
-    with _overlaid(ax, label):
-        draw_curves(ax, [run], curves, over, (None, None))
-    ax.set_ylabel("ring speed in Hz")
-    finish(ax, over)
-    legend_beside(ax)
-    return ax
+    with _overlaid(ax, label) as axes:
+        draw_curves(axes, [run], curves, over, (None, None))
+        axes.set_ylabel("ring speed in Hz")
+        finish(axes, over)
+    return axes
 
 
 def film_signal(
@@ -258,12 +250,10 @@ def film_signal(
     >>> run = frbcli.read_run("run.h5")  # doctest: +SKIP
     >>> ax = frbcli.draw_film_signal(run, "power")  # doctest: +SKIP
     """
-    ax = _axes(ax)
-    with _overlaid(ax, label):
-        draw_quantity(ax, [run], kind, part, over)
-    finish(ax, over)
-    legend_beside(ax)
-    return ax
+    with _overlaid(ax, label) as axes:
+        draw_quantity(axes, [run], kind, part, over)
+        finish(axes, over)
+    return axes
 
 
 def campbell(analysis: Stability, ax: Axes | None = None, label: str = "") -> Axes:
@@ -286,12 +276,10 @@ def campbell(analysis: Stability, ax: Axes | None = None, label: str = "") -> Ax
     >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
     >>> ax = frbcli.draw_campbell(frbcli.stability(case))  # doctest: +SKIP
     """
-    ax = _axes(ax)
-    with _overlaid(ax, label):
-        draw_frequencies(ax, [point for point in analysis.sweep if point.rests])
-    ax.set_xlabel("rotor speed in Hz")
-    legend_beside(ax)
-    return ax
+    with _overlaid(ax, label) as axes:
+        draw_frequencies(axes, [point for point in analysis.sweep if point.rests])
+        axes.set_xlabel("rotor speed in Hz")
+    return axes
 
 
 def response(motion: Response, ax: Axes | None = None, label: str = "") -> Axes:
@@ -314,11 +302,9 @@ def response(motion: Response, ax: Axes | None = None, label: str = "") -> Axes:
     >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
     >>> ax = frbcli.draw_response(frbcli.response(case))  # doctest: +SKIP
     """
-    ax = _axes(ax)
-    with _overlaid(ax, label):
-        draw_amplitude(ax, motion)
-    legend_beside(ax)
-    return ax
+    with _overlaid(ax, label) as axes:
+        draw_amplitude(axes, motion)
+    return axes
 
 
 def bearing(
@@ -345,21 +331,21 @@ def bearing(
     >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
     >>> ax = frbcli.draw_bearing(frbcli.bearing_sheet(case))  # doctest: +SKIP
     """
-    ax = _axes(ax)
-    with _overlaid(ax, label):
-        draw_coefficient(ax, sheet, quantity)
-    ax.set_xlabel("eccentricity" if sheet.over == ECCENTRICITY else "rotor speed in Hz")
-    legend_beside(ax)
-    return ax
+    with _overlaid(ax, label) as axes:
+        draw_coefficient(axes, sheet, quantity)
+        axes.set_xlabel("eccentricity" if sheet.over == ECCENTRICITY else "rotor speed in Hz")
+    return axes
 
 
 @contextmanager
-def _overlaid(ax: Axes, label: str) -> Iterator[None]:
-    """What is drawn within it has the colours that follow after the curves before, and names that begin so."""
-    lines, areas = list(ax.lines), list(ax.collections)
-    yield
-    drawn = [line for line in ax.lines if line not in lines]
-    filled = [area for area in ax.collections if area not in areas]
+def _overlaid(ax: Axes | None, label: str) -> Iterator[Axes]:
+    """The given axes, or axes of a new figure. What is drawn on them within it has the colours that follow after the
+    curves before, and names that begin with the label, in a legend."""
+    axes = _axes(ax)
+    lines, areas = list(axes.lines), list(axes.collections)
+    yield axes
+    drawn = [line for line in axes.lines if line not in lines]
+    filled = [area for area in axes.collections if area not in areas]
     both: list[Any] = [*drawn, *filled]
     named = [each for each in both if not str(each.get_label()).startswith("_")]
     for each in named or (drawn[:1] if label else []):
@@ -373,6 +359,7 @@ def _overlaid(ax: Axes, label: str) -> Iterator[None]:
         for area in filled:
             for colour in {to_hex(cast("Any", face)) for face in area.get_facecolor()} & set(changed):
                 area.set_facecolor(changed[colour])
+    legend_beside(axes)
 
 
 def _colour(line: Line2D) -> str:

@@ -369,31 +369,22 @@ def assembled(
         points=tuple((name, place[: len(PLANE)]) for name, place in nodes.items()),
     )
     own = [part.seen_by(relative(link), link.count) for link, part in parts]
-    machine = machine.with_parts([*own, *_internal_dampings(bodies, size)])
+    damped = ((body.internal, at) for body, at in _within(bodies, size) if body.internal is not None)
+    machine = machine.with_parts([*own, *(LinearPart.turning(damping).seen_by(at) for damping, at in damped)])
     constant = (nodes[each.node][: len(PLANE)].T @ np.array(each.force) for each in forces)
     if all(body.inertia is not None for body in bodies):
         nodes[GROUND] = -np.concatenate([body.inertia for body in bodies if body.inertia is not None], axis=1)
     laws = tuple(Port(name, relative(link), link.count, law) for name, link, law in ports)
     varying = (load.seen_by(nodes[node][: len(PLANE)]) for node, load in loads)
-    loaded = (*_bows(bodies, size), *varying)
-    return replace(machine, static_load=sum(constant, machine.static_load), loads=loaded, ports=laws)
+    bent = (bow_load(body.bow).seen_by(at) for body, at in _within(bodies, size) if body.bow is not None)
+    return replace(machine, static_load=sum(constant, machine.static_load), loads=(*bent, *varying), ports=laws)
 
 
-def _bows(bodies: Sequence[Body], size: int) -> Iterator[Load]:
-    """The loads of bodies that are bent without load, on all degrees of freedom of a machine with n of them."""
+def _within(bodies: Sequence[Body], size: int) -> Iterator[tuple[Body, Array]]:
+    """Bodies with the maps (m, n) from the degrees of freedom of a machine with n of them to their own."""
     first = 0
     for body in bodies:
-        if body.bow is not None:
-            yield bow_load(body.bow).seen_by(np.eye(body.size, size, first))
-        first += body.size
-
-
-def _internal_dampings(bodies: Sequence[Body], size: int) -> Iterator[LinearPart]:
-    """The dampings of bodies that turn with them, on all degrees of freedom of a machine with n of them."""
-    first = 0
-    for body in bodies:
-        if body.internal is not None:
-            yield LinearPart.turning(body.internal).seen_by(np.eye(body.size, size, first))
+        yield body, np.eye(body.size, size, first)
         first += body.size
 
 

@@ -236,7 +236,7 @@ def _flows_of_motions(
             d[k], v[k] = felt_motion(control, d[k], v[k])
         w = v + 0.5 * total[:, i : i + 1] * np.column_stack([d[:, 1], -d[:, 0]])
         motions = np.column_stack([d, scale * w])
-        flows[:, i] = clearance[:, 0] / scale[:, 0] * end_flows(end, motions)
+        flows[:, i] = clearance[:, 0] / scale[:, 0] * end_flows(end, motions, 1.0)
     return flows
 
 

@@ -19,8 +19,7 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.compiled import by_types, compiled, folder_of
 from frbcli.film.cells.balance.ends import FILLING, side_flow
-from frbcli.film.cells.balance.grid_motion import level
-from frbcli.film.cells.data import PASSED
+from frbcli.film.cells.data import PASSED, level
 from frbcli.solve.drive import brake_at_ports, end_of_turning, overshoots, stage_rotation, turn_on, turns_freely
 from frbcli.solve.films.forces import drag_integral, left_over, solved
 from frbcli.solve.films.steps import (

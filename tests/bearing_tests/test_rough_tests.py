@@ -4,14 +4,13 @@ import math
 
 import numpy as np
 import pytest
-from films import ROUGH
+from films import ROUGH, plain_touch
 
 from frbcli.bearing_tests.kinematic import KinematicResult, rotation, squeeze, whirl
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.roughness.asperities import SLOW
-from frbcli.film.roughness.plain import plain_touch
 from frbcli.linear.sheets.bearing import bearing_sheet
 from frbcli.scene.machine.system import rough_surfaces
 

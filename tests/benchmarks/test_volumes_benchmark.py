@@ -23,11 +23,10 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balance.balances import GridMotion
 from frbcli.film.cells.balance.ends import FLOWS
-from frbcli.film.cells.balance.grid_motion import level
 from frbcli.film.cells.balance.newton_step import film_newton
 from frbcli.film.cells.balance.states import FRACTION, STATES, cell_states, follow_law
 from frbcli.film.cells.block_cyclic import ENTRIES
-from frbcli.film.cells.data import COS, GAP, SIDES, SIN, volume_films
+from frbcli.film.cells.data import COS, GAP, SIDES, SIN, level, volume_films
 from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure
 from frbcli.film.cells.solver import FilmSolver
 

@@ -20,8 +20,9 @@ from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
 from frbcli.case.reading.shipped import shipped_cases, shipped_names
 from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
 from frbcli.case.schema import Case, json_schema
-from frbcli.case.supplies import SUPPLIES, OilSupply, Outline, kind_of
+from frbcli.case.supplies import SUPPLIES, OilSupply, kind_of
 from frbcli.errors import InputError
+from frbcli.film.gap import Hole
 from frbcli.runs.run import rundown, runup
 from frbcli.scene.course import default_speeds
 from frbcli.scene.films import film_places, film_section, is_plain
@@ -339,8 +340,8 @@ def test_half_of_the_width_is_solved_where_all_openings_lie_in_its_middle(
     class Rows(OilSupply):
         kind: str = "rows"
 
-        def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
-            return tuple(Outline(0.0, axial, 1e-3 / radius, 0.05 * width) for axial in places)
+        def outlines(self, radius: float, width: float) -> tuple[Hole, ...]:
+            return tuple(Hole(0.0, axial, 1e-3 / radius, 0.05 * width) for axial in places)
 
     found = Rows().openings(12.5e-3, 20e-3, "free-to-air", AMBIENT)
     assert (found.copies, found.far) == (copies, "symmetry" if copies == 2 else "free-to-air")

@@ -19,8 +19,8 @@ from frbcli.equilibrium.static_machine import WarmMachines
 from frbcli.errors import InputError
 from frbcli.film.cells.balance.ends import outflow
 from frbcli.film.cells.film import Motion
+from frbcli.film.cells.mean_film import mean_end_flows
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.mean_outflow import mean_end_flows
 from frbcli.runs.run import runup
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan

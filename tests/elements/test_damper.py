@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from films import short_pressure
 from scipy.optimize import brentq
 
 import frbcli
 from frbcli.analysis.signals import bearing_clearance, point_of
 from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
 from frbcli.cycles.limit_cycles import limit_cycles
-from frbcli.film.rectangles.short import short_pressure
 from frbcli.linear.damped_modes import damped_modes
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability

@@ -17,9 +17,9 @@ from frbcli.film.cavitation.law import Law, Scales
 from frbcli.film.cavitation.two_phase import Peeken, TwoPhase
 from frbcli.film.cells.balance.states import FRACTION
 from frbcli.film.cells.data import COS, GAP, SIN, WET, VolumeFilms
-from frbcli.film.contact_gap import KEPT, closes_freely_until, contact_gap
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film_force import film_force
+from frbcli.film.roughness.contact import KEPT, closes_freely_until, contact_gap
 from frbcli.runs.march import March
 from frbcli.scene.machine.system import Segment, System
 from frbcli.scene.planning.cell_choice import run_up_profile

@@ -184,7 +184,7 @@ def test_arrays_that_kernels_make_have_one_who_counts_their_references() -> None
         if not NUMBERS.fullmatch(returned):
             counts.setdefault(name, set()).add("makes_arrays=True" in decorator)
             assert "makes_arrays=True" in decorator or "internal=True" in decorator, name
-    assert {"end_flows", "_end_flows"} <= set(counts)
+    assert {"end_flows", "mean_end_flows"} <= set(counts)
     for name, decorator, _, called in found:
         for given in called & set(counts):
             assert counts[given] == {"makes_arrays=True" in decorator}, f"{name} calls {given}"

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from films import ROUGH
+from films import ROUGH, plain_touch
 
 from frbcli.bearing_tests.kinematic import rotation
 from frbcli.case.reading.load import load_case
@@ -17,7 +17,6 @@ from frbcli.equilibrium import static_films
 from frbcli.equilibrium.dynamic_films import dynamic_film
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.static_machine import StaticMachines, warm_machine
-from frbcli.film.roughness.plain import plain_touch
 from frbcli.linear.sheets.bearing import bearing_sheet
 from frbcli.linear.sheets.film_state import FilmState, MixedFriction
 from frbcli.scene.gate.gate import faults

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from flows import net_flow
 from marches import control, planned, run_up, slope
+from plain_balances import net_flow
 
 import frbcli
 from frbcli.arrays import Array

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from differences import differences
-from flows import net_flow
 from marches import run_up
 from numba import njit
+from plain_balances import CellBalances, net_flow
 from scipy.optimize import brentq
 
 from frbcli.arrays import Array
@@ -17,7 +17,6 @@ from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cells.balance.ends import CHANNELS_NET
-from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.channels import with_channels
 from frbcli.film.cells.data import OIL, PASSED, UNKNOWN, W, volume_films
 from frbcli.film.cells.film import Motion, VolumeFilm
@@ -114,9 +113,8 @@ def _fed(film: VolumeFilm, feed_holes: float, groove: float) -> float:
     solution = FilmSolver(there).steady(motion)
     flow = solution.flows.supply
     if section.far == "groove":  # which supplies oil as well
-        fluxes, _, _ = CellBalances(there.section, there.grid, motion).fluxes(
-            solution.state.pressure, solution.state.fraction
-        )
+        state = solution.state
+        fluxes = CellBalances(there.section, there.grid, motion).fluxes(state.pressure, state.fraction)
         flow += float(fluxes.far.sum())
     return flow * section.copies * section.radius * section.width * section.clearance
 

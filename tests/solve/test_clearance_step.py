@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from flows import net_flow
+from plain_balances import net_flow
 from resumed import assert_resumable
 
 import frbcli

@@ -24,7 +24,7 @@ from typing import Any, Self
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.film.cavitation.law import Cell, CellState, FilmOil, Key, Law, Numbers, Scales
+from frbcli.film.cavitation.law import Cell, FilmOil, Key, Law, Numbers, Scales
 
 ITERATIONS, SETTLED = 60, 1e-14  # of Newton's method, which takes five on the average
 
@@ -68,36 +68,13 @@ class Barotropic(Law):
         """w at which the mixture ends and the vapour begins."""
         return parameters[4] - 1.0 + parameters[0] * parameters[5] / scales.reference
 
-    def cells(self, w: Array, scales: Scales) -> CellState:
+    @staticmethod
+    def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
         """w = theta - 1 + (p - p_cav) / reference, by Newton's method for u = (p - p_cav) / N in the mixture.
 
         theta = (1 + r) / (exp(-u) + r) is a logistic function of u, with its inflection at u = -ln r. From there, or
         from the asymptote w = u N / reference - (0 or 1) if that is nearer to the root, the steps only go one way.
         """
-        share, r = self.tension / scales.reference, self.ratio
-        bottom = self.emptied - 1.0 + share * self.lowest
-        inside = np.clip(w, bottom, 0.0)
-        middle = -math.log(r)
-        low = inside < _fraction(middle, r) - 1.0 + share * middle
-        u = np.where(low, np.minimum(middle, (inside + 1.0) / share), np.maximum(middle, inside / share))
-        for _ in range(ITERATIONS):
-            theta = _fraction(u, r)
-            slope = theta * (1.0 - r * theta / (1.0 + r))
-            u = u + (inside - (theta - 1.0 + share * u)) / (slope + share)
-        theta = _fraction(u, r)
-        mixed = theta * (1.0 - r * theta / (1.0 + r)) / self.tension  # dtheta / dp
-        full, below = w > 0.0, w < bottom
-        steep = np.where(full, 1.0 / self.liquid, np.where(below, 1.0 / self.vapour, mixed))
-        by_w = 1.0 / (steep + 1.0 / scales.reference)
-        rise = self.tension * np.where(full, 0.0, u) + (w - inside) * by_w  # p - p_cav
-        zero = np.zeros_like(w)
-        return CellState(
-            scales.cavitation + rise, 1.0 + w - rise / scales.reference, zero, by_w, steep * by_w, zero
-        )  # fmt: skip
-
-    @staticmethod
-    def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
-        """State of one cell, see `cells`."""
         tension, r, liquid, vapour, emptied, lowest = parameters
         share = tension / scales.reference
         bottom = emptied - 1.0 + share * lowest

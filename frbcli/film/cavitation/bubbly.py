@@ -31,7 +31,6 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.film.cavitation.law import CellState, CellWithGas, FilmOil, Key, Law, Numbers, Scales
 
-TINY = 1e-300  # a coefficient or a root that is no divisor
 INSTANT = 1e-25  # s, as good as none
 
 
@@ -70,51 +69,15 @@ class Bubbly(Law):
     def legend(cls, given: Any) -> str:
         return f"bubbly, $\\alpha_B$ = {given.bunsen:g}, in equilibrium"
 
-    def cells(self, w: Array, scales: Scales) -> CellState:
-        """The state of cells whose gas is in equilibrium."""
-        return self.cells_with_gas(w, scales, np.zeros_like(w), np.zeros_like(w))
-
-    def cells_with_gas(self, w: Array, scales: Scales, carried: Array, turnover: Array) -> CellState:
-        """The state of cells with free gas of their own; carried: c_in; turnover: r.
-
-        w + 1 + p_cav / reference = theta + p / reference is a quadratic in u where c = a - b u, which holds with other
-        a and b for release, absorption, and absorption of all gas. Below p = 0 the law goes on linearly.
-        """
-        ratio, total = self.saturation / scales.reference, self.bunsen + self.supplied
-        level = w + 1.0 + (scales.cavitation + scales.ambient) / scales.reference
-        release, absorb = (
-            1.0 / (1.0 + max(time, INSTANT) * turnover) for time in (self.release_time, self.absorption_time)
-        )
-        kept = (1.0 - absorb) * carried  # where the oil dissolves as much as it can
-        slope = max(self.bunsen, TINY)
-        balanced, clear = (total - carried) / slope, np.full_like(w, total / slope)
-        releases = level < _level(balanced, carried, ratio)
-        clears = ~releases & (level >= _level(clear, kept, ratio))
-        share = np.where(releases, release, np.where(clears, 0.0, absorb))
-        a = np.where(clears, kept, carried + share * (total - carried))
-        e = 1.0 - share * self.bunsen
-        inside = np.maximum(level, 0.0)
-        b = ratio * a + 1.0 - inside * e
-        root = np.sqrt(np.maximum(b * b + 4.0 * ratio * e * inside * a, TINY))
-        high = (root - b) / np.where(b > 0.0, 1.0, 2.0 * ratio * e)
-        u = np.where(b > 0.0, 2.0 * inside * a / np.maximum(b + root, TINY), high)
-        by_w = (a + e * u) / root
-        u = u + np.minimum(level, 0.0) * by_w
-        zero = np.zeros_like(w)
-        return CellState(
-            pressure=u * self.saturation - scales.ambient,
-            fraction=level - ratio * u,
-            source=zero,
-            pressure_slope=self.saturation * by_w,
-            fraction_slope=1.0 - ratio * by_w,
-            source_slope=zero,
-        )
-
     @staticmethod
     def cell(w: float, parameters: Numbers, scales: Scales) -> CellWithGas:  # type: ignore[override]
-        """State of one cell, see `cells_with_gas`; its c_in and r are the last two parameters, its c and by how much
-        this grows with c_in at the same pressure the last two results. Without a branch, so that cells are computed
-        side by side: a cell is below the level of u if level (u + c) < ratio u (u + c) + u."""
+        """State of one cell; its c_in and r are the last two parameters, its c and by how much this grows with c_in at
+        the same pressure the last two results.
+
+        w + 1 + p_cav / reference = theta + p / reference is a quadratic in u where c = a - b u, which holds with other
+        a and b for release, absorption, and absorption of all gas. Below p = 0 the law goes on linearly. Without a
+        branch, so that cells are computed side by side: a cell is below the level of u if level (u + c) < ratio u (u +
+        c) + u. """
         bunsen, supplied, saturation, release_time, absorption_time, carried, turnover = parameters
         ratio, total = saturation / scales.reference, bunsen + supplied
         level = w + 1.0 + (scales.cavitation + scales.ambient) / scales.reference
@@ -137,6 +100,12 @@ class Bubbly(Law):
             u * saturation - scales.ambient, level - ratio * u, 0.0, saturation * by_w, 1.0 - ratio * by_w, 0.0,
             a - slope * max(u, 0.0), passed,
         )  # fmt: skip
+
+    @property
+    def parameters(self) -> Numbers:
+        """See Law.parameters. Times are longer than none: oil that is replaced at once keeps the gas it comes with."""
+        rates = (max(time, INSTANT) for time in (self.release_time, self.absorption_time))
+        return (self.bunsen, self.supplied, self.saturation, *rates)
 
     @property
     def supplied_gas(self) -> float:
@@ -169,9 +138,3 @@ class Bubbly(Law):
         u = ratio / self.saturation
         free = np.maximum(self.bunsen + self.supplied - self.bunsen * u, 0.0)
         return np.asarray(u / (u + free), dtype=np.float64)
-
-
-def _level(u: Array, free: Array, ratio: float) -> Array:
-    """theta + p / reference at the pressure u of cells with the free gas c; below all others where u is not above 0."""
-    inside = np.maximum(u, TINY)
-    return np.where(u > 0.0, ratio * inside + inside / (inside + free), -np.inf)

@@ -21,6 +21,7 @@ from numba.extending import intrinsic
 from numba.np.numpy_support import carray
 from numba.np.unsafe import ndarray
 
+from frbcli.arrays import Array
 from frbcli.compiled import address_of, c_function, call_of, compiled, jitted
 from frbcli.film.cavitation import penalty
 from frbcli.film.cavitation.law import CellState, Law, Scales
@@ -80,10 +81,11 @@ def given_parameters(law: Law) -> np.ndarray[Any, np.dtype[np.float64]]:
     return parameters
 
 
-def compiled_cells(law: Law, w: np.ndarray[Any, np.dtype[np.float64]], scales: Scales) -> CellState:
-    """Law.cells by the compiled form."""
+def compiled_cells(law: Law, w: Array, scales: Scales, carried: Array | float, turnover: Array | float) -> CellState:
+    """See Law.cells."""
     unknowns = np.ascontiguousarray(w, dtype=np.float64)
     numbers, pressures, states = given_parameters(law), np.array(scales), np.zeros((LAYERS, *unknowns.shape))
+    states[CARRIED_GAS], states[TURNOVER] = carried, turnover
     arrays = (array.ctypes.data_as(_DOUBLES) for array in (numbers, pressures, unknowns, states))
     kind: Any = type(law)
     compiled_law(kind).cells.ctypes(unknowns.size, *arrays)

@@ -33,13 +33,9 @@ class Sommerfeld(Law):
     closed = True
     cost = 1.0
 
-    def cells(self, w: Array, scales: Scales) -> CellState:
-        """w = (p - p_cav) / reference."""
-        zero, one = np.zeros_like(w), np.ones_like(w)
-        return CellState(scales.cavitation + w * scales.reference, one, zero, one * scales.reference, zero, zero)
-
     @staticmethod
     def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
+        """w = (p - p_cav) / reference."""
         return scales.cavitation + w * scales.reference, 1.0, 0.0, scales.reference, 0.0, 0.0
 
 
@@ -69,19 +65,6 @@ class Reynolds(Law):
     edges = True
     cost = 1.0
 
-    def cells(self, w: Array, scales: Scales) -> CellState:
-        """w = (p - p_cav) / reference in a full cell; minus the source over the reference in others."""
-        full = w > 0.0
-        zero = np.zeros_like(w)
-        return CellState(
-            pressure=scales.cavitation + np.where(full, w, 0.0) * scales.reference,
-            fraction=np.ones_like(w),
-            source=np.where(full, 0.0, -w) * scales.reference,
-            pressure_slope=np.where(full, scales.reference, 0.0),
-            fraction_slope=zero,
-            source_slope=np.where(full, 0.0, -scales.reference),
-        )
-
     def edged(self, state: CellState, w: Array, scales: Scales, rate: Array, through: Array) -> CellState:
         """See Law.edged. s is linear in w, so that pressure and source have no kink: w reference = 2 s A / (2 through),
         which is the pressure and once more that at s = 1 where s > 1."""
@@ -104,6 +87,7 @@ class Reynolds(Law):
 
     @staticmethod
     def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
+        """w = (p - p_cav) / reference in a full cell; minus the source over the reference in others."""
         if w > 0.0:
             return scales.cavitation + w * scales.reference, 1.0, 0.0, scales.reference, 0.0, 0.0
         return scales.cavitation, 1.0, -w * scales.reference, 0.0, 0.0, -scales.reference
@@ -139,25 +123,10 @@ class Elrod(Law):
         modulus = given.bulk_modulus
         return f"Elrod, {'incompressible' if modulus is None else f'bulk modulus {modulus / BAR:.4g} bar'}"
 
-    def cells(self, w: Array, scales: Scales) -> CellState:
-        """w = (p - p_cav) / reference in a full cell, whose theta is (3.35), and theta - 1 in others."""
-        full = w > 0.0
-        above = np.where(full, w, 0.0) * scales.reference
-        packed = above / self.bulk_modulus  # ln(theta), (3.35); beyond 1 the law goes on linearly, for Newton's method
-        fraction = np.exp(np.minimum(packed, 1.0)) * np.maximum(packed, 1.0) + np.where(full, 0.0, w)
-        steep = np.exp(np.minimum(packed, 1.0)) * scales.reference / self.bulk_modulus
-        zero = np.zeros_like(w)
-        return CellState(
-            pressure=scales.cavitation + above,
-            fraction=fraction,
-            source=zero,
-            pressure_slope=np.where(full, scales.reference, 0.0),
-            fraction_slope=np.where(full, steep, 1.0),
-            source_slope=zero,
-        )
-
     @staticmethod
     def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
+        """w = (p - p_cav) / reference in a full cell, whose theta is (3.35), and theta - 1 in others. From theta = e on
+        the law goes on linearly, for Newton's method."""
         if w > 0.0:
             if parameters[0] == math.inf:  # without exp, which the vector units would take for the cavity as well
                 return scales.cavitation + w * scales.reference, 1.0, 0.0, scales.reference, 0.0, 0.0

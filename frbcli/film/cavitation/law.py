@@ -140,17 +140,13 @@ class Law:
         `cell` is."""
         return -np.inf
 
-    def cells(self, w: Array, scales: Scales) -> CellState:
-        """The plain form: the state of cells with the unknown w, of any shape. A law without one takes its compiled
-        form for it."""
+    def cells(self, w: Array, scales: Scales, carried: Array | float = 0.0, turnover: Array | float = 0.0) -> CellState:
+        """The state of cells with the unknown w, of any shape, by the compiled form. carried, turnover: of the shape of
+        w, the two parameters that `cell` of a law with gas takes behind its own; without them the gas is in
+        equilibrium."""
         from frbcli.film.cavitation.compiled import compiled_cells
 
-        return compiled_cells(self, w, scales)
-
-    def cells_with_gas(self, w: Array, scales: Scales, carried: Array, turnover: Array) -> CellState:
-        """The plain form of a law that carries gas. carried, turnover: arrays of the shape of w, the two
-        parameters that `cell` takes behind its own."""
-        return self.cells(w, scales)
+        return compiled_cells(self, w, scales, carried, turnover)
 
     @property
     def supplied_gas(self) -> float:

@@ -81,26 +81,6 @@ class Penalty(Law):
             prefactor, steepness = prefactor * rate, steepness / rate
         return prefactor, steepness, STANDS
 
-    def cells(self, w: Array, scales: Scales) -> CellState:
-        """x = P - P_cav solves x - q(x) / SPREAD = w reference, in closed form by Wright's omega function of steepness
-        q / SPREAD."""
-        from scipy.special import wrightomega
-
-        b = self.steepness
-        target = w * scales.reference
-        omega = wrightomega(np.log(self.prefactor * b / SPREAD) - b * target)
-        # Where the source is large, target + q would be a small difference of large numbers.
-        logarithm = -np.log(np.maximum(omega, 1.0) * SPREAD / (self.prefactor * b)) / b
-        above = np.where(omega > 1.0, logarithm, target + omega / b)
-        return CellState(
-            pressure=scales.cavitation + above,
-            fraction=np.ones_like(w),
-            source=SPREAD * omega / b,
-            pressure_slope=scales.reference / (1.0 + omega),
-            fraction_slope=np.zeros_like(w),
-            source_slope=-SPREAD * scales.reference * omega / (1.0 + omega),
-        )
-
     def edged(self, state: CellState, w: Array, scales: Scales, rate: Array, through: Array) -> CellState:
         """See Law.edged: a cell next to the edge has this source where the law itself gives less, but not where the
         pressure falls to the cavity pressure over several cells."""
@@ -138,7 +118,9 @@ class Penalty(Law):
 
     @staticmethod
     def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
-        """State of one cell, see `cells`, without a branch, so that cells are computed side by side."""
+        """x = P - P_cav solves x - q(x) / SPREAD = w reference, in closed form by Wright's omega function of steepness
+        q / SPREAD. Without a branch, so that cells are computed side by side. Where the source is large, target + q
+        would be a small difference of large numbers."""
         a, b = parameters[0], parameters[1]
         per_b = 1.0 / b
         target = w * scales.reference

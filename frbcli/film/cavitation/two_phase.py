@@ -14,7 +14,7 @@ from typing import Any, Self
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.film.cavitation.law import Cell, CellState, FilmOil, Key, Law, Numbers, Scales
+from frbcli.film.cavitation.law import Cell, FilmOil, Key, Law, Numbers, Scales
 
 
 @dataclass(frozen=True)
@@ -40,33 +40,12 @@ class Peeken(Law):
     def legend(cls, given: Any) -> str:
         return f"Peeken, $\\alpha_B$ = {given.bunsen:g}"
 
-    def cells(self, w: Array, scales: Scales) -> CellState:
+    @staticmethod
+    def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
         """theta = 1 / (1 + r), r = alpha (p_cav - p) / p: (1 - u) / (1 - u + alpha u) of the fall u = 1 - p / p_cav.
 
         w = theta - 1 - u ratio is a quadratic in u. Newton's method may ask below p = 0, where it goes on linearly.
         """
-        cavity = scales.cavitation + scales.ambient  # absolute
-        ratio, a = cavity / scales.reference, self.bunsen
-        partial = np.clip(w, -1.0 - ratio, 0.0)
-        linear = a + ratio - partial * (1.0 - a)
-        root = np.sqrt(np.maximum(linear**2 + 4.0 * ratio * (1.0 - a) * partial, 0.0))
-        fall = -2.0 * partial / (linear + root)
-        full = w > 0.0
-        steep = np.where(full, 0.0, a / (1.0 - fall * (1.0 - a)) ** 2)  # dtheta / d(p / p_cav)
-        rise_slope = 1.0 / (steep + ratio)
-        fall = fall - np.minimum(w - partial, 0.0) * rise_slope
-        zero = np.zeros_like(w)
-        return CellState(
-            pressure=scales.cavitation + np.where(full, w * scales.reference, -fall * cavity),
-            fraction=np.where(full, 1.0, 1.0 + w + fall * ratio),
-            source=zero,
-            pressure_slope=cavity * rise_slope,
-            fraction_slope=steep * rise_slope,
-            source_slope=zero,
-        )
-
-    @staticmethod
-    def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
         if w > 0.0:
             return scales.cavitation + w * scales.reference, 1.0, 0.0, scales.reference, 0.0, 0.0
         a = parameters[0]
@@ -155,31 +134,12 @@ class TwoPhase(Law):
         absolute = scales.cavitation + scales.ambient
         return outer_slope * (2.0 * steepness - 1.0) - 1.0 - 2.0 * (1.0 - steepness) * absolute / scales.reference
 
-    def cells(self, w: Array, scales: Scales) -> CellState:
-        """w = theta - 1 + (p - p_cav) / reference, solved for p: linear beyond the step, a cubic on it."""
-        cavity = scales.cavitation + scales.ambient
-        ratio, x_0 = cavity / scales.reference, self._start
-        bottom = self.outer_slope * x_0 - 1.0 + (x_0 - 1.0) * ratio  # w where the step begins
-        above, below = w > 0.0, w < bottom
-        inside = np.clip(w, bottom, 0.0)
-        from_top = -inside < inside - bottom  # the nearer end of the step
-        part = self._from_end(np.minimum(-inside, inside - bottom), ratio)
-        rise = (x_0 - 1.0) * np.where(from_top, part, 1.0 - part)  # p / p_cav - 1
-        rise += (w - inside) / (ratio + self.outer_slope)
-        slope = np.where(above | below, self.outer_slope, self._slope(part))
-        rise_slope = 1.0 / (slope + ratio)
-        return CellState(
-            pressure=scales.cavitation + rise * cavity,
-            fraction=1.0 + w - rise * ratio,  # not from the pressure: the step would multiply its round-off
-            source=np.zeros_like(w),
-            pressure_slope=cavity * rise_slope,
-            fraction_slope=slope * rise_slope,
-            source_slope=np.zeros_like(w),
-        )
-
     @staticmethod
     def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
-        """As `cells`, without a branch and without a function of libraries, so that cells are computed side by side."""
+        """w = theta - 1 + (p - p_cav) / reference, solved for p: linear beyond the step, a cubic on it, from the nearer
+        end of the step. With u = 1/2 - p~ of (4.34) it reads u^3 - p u + q = 0, whose middle root is a sine. Without a
+        branch and without a function of libraries, so that cells are computed side by side. theta does not follow from
+        the pressure: the step would multiply its round-off."""
         steepness, outer_slope, _ = parameters
         cavity = scales.cavitation
         absolute = cavity + scales.ambient
@@ -233,20 +193,3 @@ class TwoPhase(Law):
         height, m = self._height_and_slope
         slope: Array = height / (1.0 - self._start) * ((1.0 - m) * 6.0 * place * (1.0 - place) + m)
         return slope
-
-    def _from_end(self, left: Array, ratio: float) -> Array:
-        """p~ of (4.34) from the nearer end of the step, at most 1/2, where theta - 1 + (p - p_cav) / reference is
-        `left` from what it is there: the middle root of A p~^2 (3 - 2 p~) + B p~ = left."""
-        height, m = self._height_and_slope
-        cubic, linear = height * (1.0 - m), height * m + (1.0 - self._start) * ratio
-        # With u = 1/2 - p~ it reads u^3 - p u + q = 0, whose middle root is a sine.
-        p = (1.5 * cubic + linear) / (2.0 * cubic)
-        q = (0.5 * (cubic + linear) - left) / (2.0 * cubic)
-        radius = np.sqrt(p / 3.0)
-        part = 0.5 - 2.0 * radius * np.sin(np.arcsin(np.clip(q / (2.0 * radius**3), -1.0, 1.0)) / 3.0)
-        for _ in range(POLISHING):
-            part = np.clip(part, 0.0, 0.5)
-            defect = cubic * part**2 * (3.0 - 2.0 * part) + linear * part - left
-            part = part - defect / (6.0 * cubic * part * (1.0 - part) + linear)
-        clipped: Array = np.clip(part, 0.0, 0.5)
-        return clipped

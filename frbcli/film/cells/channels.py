@@ -56,8 +56,7 @@ def with_channels(data: VolumeFilms, films: Sequence[VolumeFilm], channels: Sequ
         size[UNKNOWN][inside], size[EXCHANGE][inside] = 1.0, _conductances(film)[inside]
         size[FEED_HOLE][inside] = 1.0 + slot
         section, conductance = film.section, size[EXCHANGE][inside].sum()
-        flow_scale = section.copies * section.radius * section.width * section.clearance
-        feed_holes.append((feed_hole.film, slot, flow_scale, section.pressure_scale, conductance))
+        feed_holes.append((feed_hole.film, slot, section.flow_scale, section.pressure_scale, conductance))
         places.append(np.argwhere(inside))
         return len(feed_holes) - 1
 

@@ -1,7 +1,9 @@
-"""Films on volumes as arrays for the compiled kernels: all films of a machine side by side."""
+"""Films on volumes as arrays for the compiled kernels: all films of a machine side by side; and the motion of a journal
+as the kernels of a film see it, with the gap that it makes along the axis."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -10,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import addresses, given_parameters
 from frbcli.film.cavitation.table import LARGEST_PARAMETERS
 from frbcli.film.cells.balance.boundaries import end_slopes, supply_line, supply_pressure
-from frbcli.film.cells.balance.plain_diffusion import NO_DISTANCE, diffusing, end_reaches
 from frbcli.film.cells.block_cyclic import ring_solver
-from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.film import Motion, VolumeFilm
 from frbcli.film.cells.mesh.bores import bathed
 from frbcli.film.cells.mesh.grid import VolumeGrid, force_weights
 from frbcli.film.gap import Section, gap_height
@@ -31,6 +33,8 @@ BY_ITSELF, BY_X, BY_Y, SIDES = range(4)
 BY_ENDS, ALL_SIDES = 1, 5
 # Of forces: how they clip the pressure at p_cav.
 NO_CLIP, BY_CELLS, BETWEEN_MIDDLES = range(3)
+
+NO_DISTANCE = 1e-30  # between two cells of a groove: nothing flows there
 
 
 def record(*fields: tuple[Any, ...]) -> Any:
@@ -250,3 +254,85 @@ def places_along(middles: Array, edges: Array, widths: Array) -> Array:
 W, W_BEFORE, OIL, RATE, WET = range(5)
 GAS, GAS_RATE, WET_WITH_GAS = range(WET, WET + 3)
 PASSED, NOW = range(2)  # layers of their oil: what has passed so far, and passes now
+
+
+def diffusing(section: Section, grid: VolumeGrid) -> tuple[float, float]:
+    """L of the diffusion of a film in rad, at least the mean length of its cells, and by how much more it acts along
+    than around, whose coordinate counts over the width of the section; 0 where there is none."""
+    given = section.diffusion
+    if given is None or given.length == 0.0:
+        return 0.0, 0.0
+    along = (section.bearing_width / section.width) ** 2 if given.along else 0.0
+    return max(given.length, 2.0 * math.pi / grid.shape[0]), along
+
+
+def end_reaches(height: Array, seals: tuple[float, float]) -> tuple[float, float]:
+    """1 over the distances of the last unknowns, at `height` (k,), from the oil beyond the ends z = 0 and z = 1."""
+    return 1.0 / (float(height[0]) + seals[0]), 1.0 / (1.0 - float(height[-1]) + seals[1])
+
+
+class GridMotion(NamedTuple):
+    """Motion of the journal relative to a film's grid, in the grid's directions, and its share in a time step.
+
+    d: displacement over the clearance; omega: omega_J + omega_S relative to the grid; spin: angular speed of the grid,
+    which turns the velocity v; g: how far a velocity moves the journal within the stage, 0: not at all; rate: of what
+    is stored, 1 / g of a film that remembers its oil, else 0. Of a journal that tilts d and v are at the place 0 along
+    the axis, see PLACES, and grow up to the place 1 by `more`; by_ends: whether derivatives are by the velocities at
+    both.
+    """
+
+    d_x: float
+    d_y: float
+    omega: float
+    v_x: float = 0.0
+    v_y: float = 0.0
+    spin: float = 0.0
+    g: float = 0.0
+    rate: float = 0.0
+    more_x: float = 0.0
+    more_y: float = 0.0
+    more_v_x: float = 0.0
+    more_v_y: float = 0.0
+    by_ends: bool = False
+
+
+def seen_by_grid(motion: Motion, g: float = 0.0, by_ends: bool = False, still: bool = False) -> GridMotion:
+    """A motion over a section whose places begin at its end z = 0. still: without the velocities, which a solver
+    stores by itself."""
+    (x, y), (more_x, more_y), omega = motion.d, motion.slope, float(motion.omega)
+    (v_x, v_y), (more_v_x, more_v_y) = ((0.0, 0.0), (0.0, 0.0)) if still else (motion.v, motion.slope_rate)
+    near = (x - 0.5 * more_x, y - 0.5 * more_y), (v_x - 0.5 * more_v_x, v_y - 0.5 * more_v_y)
+    (d_x, d_y), (v_x, v_y), (more_x, more_y, more_v_x, more_v_y) = (
+        tuple(map(float, each)) for each in (*near, (more_x, more_y, more_v_x, more_v_y))
+    )
+    return GridMotion(d_x, d_y, omega, v_x, v_y, 0.0, g, 0.0, more_x, more_y, more_v_x, more_v_y, by_ends)
+
+
+@compiled(inline=True)
+def level(
+    d_x: float, d_y: float, omega: float, v_x: float, v_y: float, spin: float, g: float, rate: float
+) -> GridMotion:
+    """The motion of a journal that does not tilt."""
+    return GridMotion(d_x, d_y, omega, v_x, v_y, spin, g, rate, 0.0, 0.0, 0.0, 0.0, False)
+
+
+@compiled(inline=True)
+def gap_along(gap: float, s: float, c: float, motion: GridMotion) -> tuple[float, float]:
+    """H at the place 0 along the axis, and by how much more it is at 1, from the gap of a centred journal and sine and
+    cosine of the angle."""
+    return gap + motion.d_x * s - motion.d_y * c, motion.more_x * s - motion.more_y * c
+
+
+@compiled(inline=True)
+def add_by_motion(right: Array, i: int, j: int, z: float, by_ends: bool, by_x: float, by_y: float) -> None:
+    """Add what changes with the velocity at the place z along the axis, to the sides by the velocities."""
+    first = right.shape[1] + BY_ENDS
+    if by_ends:
+        far_x, far_y = z * by_x, z * by_y
+        right[i, j, first] += by_x - far_x
+        right[i, j, first + 1] += by_y - far_y
+        right[i, j, first + 2] += far_x
+        right[i, j, first + 3] += far_y
+    else:
+        right[i, j, first] += by_x
+        right[i, j, first + 1] += by_y

@@ -42,7 +42,6 @@ from frbcli.film.cells.balance.balances import balances
 from frbcli.film.cells.balance.boundaries import ALL
 from frbcli.film.cells.balance.ends import FLOWS, SUPPLY_NET, without_ends
 from frbcli.film.cells.balance.faces import press_cells
-from frbcli.film.cells.balance.grid_motion import seen_by_grid
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     CARRIED_GAS,
@@ -53,7 +52,7 @@ from frbcli.film.cells.balance.states import (
 )
 from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.cavity_edge import edge_slopes
-from frbcli.film.cells.data import ALL_SIDES, AREA, BY_ITSELF, BY_X, SIDES, UNKNOWN
+from frbcli.film.cells.data import ALL_SIDES, AREA, BY_ITSELF, BY_X, SIDES, UNKNOWN, seen_by_grid
 from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.balance import linear_states
 from frbcli.film.cells.loads import CavitationFactor, force, pushed, pushing, shear_weights

@@ -12,7 +12,7 @@ from frbcli.arrays import Array
 from frbcli.film.cavitation.law import FRONTS
 from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution, gap_on
 from frbcli.film.parabola import summit
-from frbcli.film.roughness.flow_factors import shear_stress
+from frbcli.film.roughness.asperities import shear_stress
 
 CavitationFactor = Literal["none", "global", "local"]
 
@@ -118,16 +118,14 @@ def moment(film: VolumeFilm, pressure: Array) -> tuple[float, float]:
 
 def pushed(film: VolumeFilm, pressure: Array) -> tuple[float, float]:
     """(x, y) of the force in N of scaled gauge pressures (m, k), or of what else is given over the cells."""
-    grid, section = film.grid, film.section
-    scale = section.copies * section.radius * section.width * section.pressure_scale
-    along = scale * (film.weights * pressure).sum(axis=1)
+    grid = film.grid
+    along = film.section.force_scale * (film.weights * pressure).sum(axis=1)
     return float(-along @ np.diff(np.cos(grid.phi))), float(-along @ np.diff(np.sin(grid.phi)))
 
 
 def pushing(film: VolumeFilm) -> Array:
     """(2, m, k) force in N on the journal per unit of the scaled pressure of each cell, as `pushed` sums it."""
-    grid, section = film.grid, film.section
-    weight = section.copies * section.radius * section.width * section.pressure_scale * film.weights
+    grid, weight = film.grid, film.section.force_scale * film.weights
     return np.stack([-np.diff(side(grid.phi))[:, None] * weight for side in (np.cos, np.sin)])
 
 
@@ -142,7 +140,7 @@ def torque(
     grid, section = film.grid, film.section
     theta = solution.state.fraction if factor == "local" else np.ones(grid.shape)
     pressure = film.mean_pressure(solution.state)
-    area = section.copies * section.radius * section.width
+    area = section.area
     gap = gap_on(section, motion, grid.centre, grid.height)
     shear = (1.0 - grid.cover) * grid.size * theta / gap
     if section.flow_roughness > 0.0:
@@ -178,8 +176,7 @@ def oil_fraction(film: VolumeFilm, solution: VolumeSolution) -> float:
 
 def oil_balance(film: VolumeFilm, solution: VolumeSolution) -> OilBalance:
     """The flows of a solution in m^3/s, by the whole bearing."""
-    section, flows = film.section, solution.flows
-    scale = section.copies * section.radius * section.width * section.clearance
+    scale, flows = film.section.flow_scale, solution.flows
     return OilBalance(
         scale * flows.inflow, scale * flows.outflow, scale * flows.supply, scale * flows.ends, flows.defect
     )
@@ -187,10 +184,9 @@ def oil_balance(film: VolumeFilm, solution: VolumeSolution) -> OilBalance:
 
 def gas_balance(film: VolumeFilm, solution: VolumeSolution) -> GasBalance | None:
     """The free gas of a solution, by the whole bearing; None if its oil carries none."""
-    section, gas = film.section, solution.gas
+    scale, gas = film.section.flow_scale, solution.gas
     if gas is None:
         return None
-    scale = section.copies * section.radius * section.width * section.clearance
     return GasBalance(gas.mean, scale * gas.inflow, scale * gas.outflow, scale * gas.released, gas.defect)
 
 

@@ -20,7 +20,6 @@ from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balance.balances import balances
 from frbcli.film.cells.balance.boundaries import feed_at, is_limited, limited
 from frbcli.film.cells.balance.ends import CREATED, ENDS_NET, FLOWS, INFLOW, OUTFLOW, SUPPLY_NET
-from frbcli.film.cells.balance.grid_motion import seen_by_grid
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     CARRIED_GAS,
@@ -37,7 +36,7 @@ from frbcli.film.cells.balance.states import (
 )
 from frbcli.film.cells.block_cyclic import CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.cavity_edge import GapRise, full_cells, gap_rise, set_edges
-from frbcli.film.cells.data import SIDES, film_alone
+from frbcli.film.cells.data import SIDES, film_alone, seen_by_grid
 from frbcli.film.cells.film import Flows, Motion, Storage, VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.balance import FreeGas, GasMixing, KeptGas, free_gas
 from frbcli.film.cells.gas.carry import FACTOR, GAS_PAST, HEIGHT, PATHS, carry_gas, follow_oil, replace_oil

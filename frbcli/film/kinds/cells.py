@@ -38,12 +38,12 @@ from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution, refilled,
 from frbcli.film.cells.gas.balance import Carried, with_own_gas
 from frbcli.film.cells.linearised import film_at, linear_film, lying, steady_force, steady_solution
 from frbcli.film.cells.loads import CavitationFactor, force, loads, shear_weights
+from frbcli.film.cells.mean_film import MeanEndFlow, mean_end_flow, mean_film
 from frbcli.film.cells.mesh.grid import run_grid
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import FINER
 from frbcli.film.kinds.contract import Compared, Films, LinearOf
 from frbcli.film.mean_fields import MeanFilm
-from frbcli.film.mean_outflow import MeanEndFlow, mean_end_flow
 from frbcli.film.rectangles.end_flow import EndFlow
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.rectangles.film_force import FilmData
@@ -127,14 +127,10 @@ class VolumeKind(Films):
         if not any(self.remembering):
             return {}
         films = [film for _, film in self.fields_of_films]
-        sections = [film.section for film in films]
-        size = np.array([
-            film.law.keeps_oil * each.copies * each.radius * each.width * each.clearance
-            for film, each in zip(films, sections, strict=True)
-        ])  # fmt: skip
+        size = np.array([film.law.keeps_oil * film.section.flow_scale for film in films])
         came, left = (float(size @ flows[PASSED, :, flow]) for flow in (INFLOW, OUTFLOW))
         passed = {"oil_in_m3": came, "oil_out_m3": left}
-        if any(each.diffusion is not None for each in sections):
+        if any(film.section.diffusion is not None for film in films):
             passed["oil_created_m3"] = float(size @ flows[PASSED, :, CREATED])
         return passed
 
@@ -300,8 +296,7 @@ class CellFilms(VolumeKind):
 
     @property
     def _areas(self) -> Array:
-        sections = [film.section for film in self.own]
-        return np.array([each.copies * each.radius * each.width for each in sections])
+        return np.array([film.section.area for film in self.own])
 
     def changeable(self) -> Self:
         data = self.data
@@ -319,7 +314,6 @@ class CellFilms(VolumeKind):
 
     def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
         """See Films.smooth: as the mean over the angle of openings that turn."""
-        from frbcli.film.cells.mean_film import mean_film  # with the solver of cells, which takes long to load
 
         means: list[FilmData] = []
         for i, film in enumerate(self.own):

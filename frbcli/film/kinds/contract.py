@@ -31,11 +31,11 @@ from frbcli.film.cells.balance.ends import FLOWS, outflow
 from frbcli.film.cells.data import WET
 from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution
 from frbcli.film.cells.linearised import LinearFilm, film_at
+from frbcli.film.cells.mean_film import MeanEndFlow
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
 from frbcli.film.grid import FINER, SAMPLES, Mesh
 from frbcli.film.mean_fields import MeanFilm
-from frbcli.film.mean_outflow import MeanEndFlow
 from frbcli.film.penalty_table.film import SourceFilm
 from frbcli.film.penalty_table.table import PenaltyTableFilm, with_half_the_nodes
 from frbcli.film.rectangles.end_flow import EndFlow, end_flow, make_end_flow

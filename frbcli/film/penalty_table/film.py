@@ -9,12 +9,10 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.errors import NotConverged
-from frbcli.film.cavitation.law import CellState
 from frbcli.film.cavitation.penalty import Penalty
-from frbcli.film.cells.balance.plain import CellBalances
-from frbcli.film.cells.film import Motion, Storage
+from frbcli.film.cells.balance.boundaries import end_slopes
 from frbcli.film.cells.mesh.grid import VolumeGrid, axial_weights, fitted_grid
-from frbcli.film.gap import Section, gap_rate
+from frbcli.film.gap import Section, gap_height, gap_rate
 from frbcli.film.grid import Mesh
 from frbcli.film.kept import kept_beside
 from frbcli.film.penalty_table.table import LIMIT, PenaltyTableFilm, row_forces, slow_speed, source_table, table_numbers
@@ -41,17 +39,26 @@ class RowEquations:
 def row_equations(section: Section, grid: VolumeGrid, eccentricity: float) -> RowEquations:
     """The equations of a section without openings, its ends at given pressures; the line of centres lies along x."""
     level = (section.cavitation_pressure - section.ambient_pressure) / section.pressure_scale
-    zero, one = np.zeros(grid.shape), np.ones(grid.shape)
-    state = CellState(level * one, one, zero, one, zero, zero)
-    outflows = []
-    for v in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)):
-        rate = gap_rate(v, grid.centre)[:, None]
-        balance = CellBalances(section, grid, Motion((eccentricity, 0.0), v, 0.0))
-        outflow, matrix = balance.residual(state, Storage(rate, np.zeros_like(rate)))
-        outflows.append(outflow)
+    groove = section.far_pressure / section.pressure_scale if section.far == "groove" else 0.0
+    face, middle = (gap_height(section, (eccentricity, 0.0), phi[:, None]) for phi in (grid.phi[1:], grid.centre))
+    around, cube = face**3 * np.diff(grid.z) / grid.around, middle**3 * np.diff(grid.phi)[:, None] * section.aspect
+    before, behind, below, above, rest = (np.zeros(grid.shape) for _ in range(5))
+    before -= np.roll(around, 1, axis=0)
+    behind -= around
+    below[:, 1:], above[:, :-1] = -cube / grid.along, -cube / grid.along
+    centre = -(before + behind + below + above)
+    first, last = end_slopes(grid.height, section.seals)
+    ends = (section.near, first, 0, above, level), (section.far, last, -1, below, level - groove)
+    for edge, slope, row, inwards, rise in ends:
+        if edge != "symmetry":
+            conductance = cube[:, 0] * slope.rise
+            centre[:, row] += conductance * (1.0 + slope.bend)
+            inwards[:, row] -= conductance * slope.bend
+            rest[:, row] += conductance * rise
+    squeezed = (grid.area * gap_rate(v, grid.centre)[:, None] for v in ((1.0, 0.0), (0.0, 1.0)))
     return RowEquations(
-        np.array([matrix.centre, matrix.before, matrix.behind, matrix.below, matrix.above]),
-        np.array([outflows[0], outflows[1] - outflows[0], outflows[2] - outflows[0]]),
+        np.array([centre, before, behind, below, above]),
+        np.array([rest, *squeezed]),
         np.ascontiguousarray(grid.area),
         np.array([-np.diff(np.cos(grid.phi)), -np.diff(np.sin(grid.phi))]),
         axial_weights(grid.z, section.far == "symmetry"),
@@ -114,14 +121,14 @@ class SourceFilm:
         turn = np.array([[c, s], [-s, c]])
         rate = max(abs(omega), 1.0) if self.relative else 1.0
         at = self.forces(eccentricity, (turn @ w / rate)[None, None, :])[0, 0]
-        force: Array = force_scale(self.section) * rate * turn.T @ at
+        force: Array = self.section.force_scale * rate * turn.T @ at
         return force
 
     def film(self) -> FilmData:
         """The film, tabulated, for the time loop. Raises NotConverged."""
         # A law derived from this one in Python may have other equations with the same numbers.
         table = _kept_table(self) if type(self.law) is Penalty else penalty_table(self)
-        return PenaltyTableFilm(force_scale(self.section), table, self.numbers)
+        return PenaltyTableFilm(self.section.force_scale, table, self.numbers)
 
 
 def penalty_table(film: SourceFilm) -> Array:
@@ -130,11 +137,6 @@ def penalty_table(film: SourceFilm) -> Array:
 
 
 _kept_table = kept_beside(row_forces)(penalty_table)
-
-
-def force_scale(section: Section) -> float:
-    """Turns the integral of P over one section into the force of the whole bearing, N s."""
-    return section.copies * section.radius * section.width * section.pressure_scale
 
 
 def _half(section: Section, along: int) -> tuple[Section, int]:

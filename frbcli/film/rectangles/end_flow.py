@@ -211,9 +211,9 @@ def _end_flow(flow, d_x, d_y, w_x, w_y, scale):  # type: ignore[no-untyped-def]
 
 
 @compiled(makes_arrays=True)
-def end_flows(flow: EndFlow, motions: Array) -> Array:
-    """(k,) of end_flow in motions (k, 4) of d and w, with the pressures of the film."""
+def end_flows(flow: EndFlow, motions: Array, scale: float) -> Array:
+    """(k,) of end_flow in motions (k, 4) of d and w."""
     flows = np.empty(motions.shape[0])
     for i in range(motions.shape[0]):
-        flows[i] = end_flow(flow, motions[i, 0], motions[i, 1], motions[i, 2], motions[i, 3], 1.0)
+        flows[i] = end_flow(flow, motions[i, 0], motions[i, 1], motions[i, 2], motions[i, 3], scale)
     return flows

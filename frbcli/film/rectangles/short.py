@@ -9,8 +9,6 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from frbcli.compiled import compiled
 
 ANGLES = 96  # points of the trapezoidal rule in Sommerfeld's angle where no closed form exists
@@ -139,11 +137,3 @@ def short_general(
         by_e_r += change * cosine
         by_e_t += change * sine
     return force_r, force_t, rr, rt, rt, tt, by_e_r, by_e_t
-
-
-def short_pressure(theta, z, eccentricity, w_r, w_t, slenderness, sigma):  # type: ignore[no-untyped-def]
-    """Sommerfeld's pressure (B.3) on the grid theta (n,) x z (m,), scaled, gauge: the plain version for the tests."""
-    theta, z = np.asarray(theta)[:, None], np.asarray(z)[None, :]
-    gap = 1.0 + eccentricity * np.cos(theta)
-    rhs = w_r * np.cos(theta) + w_t * np.sin(theta)
-    return -slenderness * rhs / (2.0 * gap**3) * z * (1.0 - z) + sigma * z

@@ -22,7 +22,7 @@ from frbcli.equilibrium.static_films import StaticFilms, static_films
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import NotConverged, input_error
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.contact_gap import closes_freely_until
+from frbcli.film.roughness.contact import closes_freely_until
 from frbcli.linear.columns import sheet_columns
 from frbcli.linear.sheets.film_state import FilmState, film_state, no_state, under_vertical_load
 from frbcli.scene.films import bearing_films

@@ -18,7 +18,6 @@ from frbcli.film.cavitation.law import ABOVE_KINK
 from frbcli.film.cells.balance.balances import balances
 from frbcli.film.cells.balance.ends import CHANNELS_NET, CREATED, ENDS_NET, SUPPLY_NET
 from frbcli.film.cells.balance.faces import film_loads
-from frbcli.film.cells.balance.grid_motion import GridMotion, gap_along, level
 from frbcli.film.cells.balance.newton_step import damp, imbalance, store_rates
 from frbcli.film.cells.balance.states import (
     FRACTION,
@@ -43,13 +42,15 @@ from frbcli.film.cells.data import (
     SIDES,
     SIN,
     UNKNOWN,
+    GridMotion,
     Records,
     VolumeFilms,
+    gap_along,
+    level,
 )
 from frbcli.film.cells.gas.carry import store_gas_rates, take_gas_along
 from frbcli.film.roughness.contact import stress_factor
-from frbcli.solve.films.cell_steps import oil_fraction
-from frbcli.solve.films.fillings import follow_filling
+from frbcli.solve.films.cell_steps import follow_filling, oil_fraction
 from frbcli.solve.stage.equations import FilmMotion
 
 # The cells balance as they are, and follow the journal by older derivatives, or by current ones; or they will balance

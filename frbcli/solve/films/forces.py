@@ -14,9 +14,8 @@ from typing import Any
 from frbcli.arrays import Array
 from frbcli.compiled import by_types, compiled, of_several, type_of
 from frbcli.film.cells.balance.ends import side_flow
-from frbcli.film.cells.balance.grid_motion import level
 from frbcli.film.cells.cavity_edge import CellEnds
-from frbcli.film.cells.data import GIVEN_PRESSURE, OIL, VolumeFilms
+from frbcli.film.cells.data import GIVEN_PRESSURE, OIL, VolumeFilms, level
 from frbcli.film.rectangles.end_flow import end_flow
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.solve.films.cell_steps import Work, oil_fraction

@@ -35,8 +35,15 @@ from frbcli.film.cells.channels import (
 )
 from frbcli.film.cells.data import BY_ITSELF, SIDES, Records, VolumeFilms
 from frbcli.film.cells.tilted_film import TiltedVolumes
-from frbcli.solve.films.cell_steps import Work, accept_cells, begin_cells, make_cell_work, write_cell_oil
-from frbcli.solve.films.fillings import GRID, filling_error
+from frbcli.solve.films.cell_steps import (
+    GRID,
+    Work,
+    accept_cells,
+    begin_cells,
+    filling_error,
+    make_cell_work,
+    write_cell_oil,
+)
 from frbcli.solve.films.tilted import TiltedWork, make_tilted_work, write_land_oil
 
 NONE, TABLES, CELLS, TILTED = "none", "tables", "cells", "tilted"

@@ -13,13 +13,11 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
-from frbcli.film.cells.balance.grid_motion import GridMotion
 from frbcli.film.cells.balance.states import follow_law
-from frbcli.film.cells.data import ALL_SIDES, Records
+from frbcli.film.cells.data import ALL_SIDES, GridMotion, Records
 from frbcli.film.cells.tilted_film import TiltedVolumes
-from frbcli.solve.films.cell_steps import cell_arrays, oil_fraction
+from frbcli.solve.films.cell_steps import GRID, cell_arrays, oil_fraction
 from frbcli.solve.films.cells import LOCAL_FACTOR, NO_FACTOR, SLOWEST, SOLVED, move_cells, sheared, solve_cells
-from frbcli.solve.films.fillings import GRID
 
 ENDS = 2  # of a bearing, each of which the loop takes for a journal
 

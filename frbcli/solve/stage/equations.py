@@ -17,7 +17,7 @@ from typing import NamedTuple
 from frbcli.arrays import Array
 from frbcli.compiled import Indices, compiled
 from frbcli.dense import solve_dense
-from frbcli.film.contact_gap import ELASTIC_LIMIT
+from frbcli.film.roughness.contact import ELASTIC_LIMIT
 from frbcli.solve.state import INVERSE_G, INVERSE_SPEED, RotorData
 
 LASTS = 0.01  # relative change of the speed over which a gyroscopic rotor keeps its inverse

@@ -25,8 +25,8 @@ from numpy.typing import NDArray
 from frbcli.arrays import Array
 from frbcli.compiled import Indices, address_of, compiled, compiled_for
 from frbcli.dense import solve_dense
-from frbcli.film.contact_gap import ELASTIC_LIMIT, closes_freely_until, contact_gap
 from frbcli.film.roughness.asperities import APART, Asperities, Rub, rub
+from frbcli.film.roughness.contact import ELASTIC_LIMIT, closes_freely_until, contact_gap
 from frbcli.rotor.loads import Harmonic, Load, Tabulated
 from frbcli.rotor.port import (
     ANSWER,

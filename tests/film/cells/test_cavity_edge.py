@@ -9,10 +9,9 @@ from differences import differences
 from frbcli.case.reading.load import load_case
 from frbcli.film.cavitation.conditions import HalfSommerfeld
 from frbcli.film.cells.balance.faces import film_loads
-from frbcli.film.cells.balance.plain_clipped import clipped_means
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, STATES
 from frbcli.film.cells.data import SIDES, volume_films
-from frbcli.film.cells.film import Motion, VolumeFilm
+from frbcli.film.cells.film import Motion, VolumeFilm, clipped_means
 from frbcli.film.cells.linearised import film_at, lying, settled_force
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.mesh.grid import volume_grid

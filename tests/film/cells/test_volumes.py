@@ -16,8 +16,7 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.penalty import PREFACTOR, Penalty, steepness_exponent
 from frbcli.film.cavitation.two_phase import Peeken, TwoPhase
 from frbcli.film.cells import solver
-from frbcli.film.cells.balance.plain import CellBalances
-from frbcli.film.cells.film import Motion, Storage, VolumeFilm, fitted_grid, reference_pressure
+from frbcli.film.cells.film import Motion, VolumeFilm, fitted_grid, reference_pressure
 from frbcli.film.cells.loads import loads
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
@@ -186,34 +185,6 @@ def test_failure_says_where_and_what_was_tried(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(solver, "ATTEMPTS", (solver.Attempt(math.inf, 1.0, 2), solver.Attempt(1.0, 4.0, 2)))
     with pytest.raises(NotConverged, match=r"4 Newton iterations.*cells do not balance, .* at phi = .* deg"):
         FilmSolver(film).steady(ROTATION)
-
-
-@pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("omega", [300.0, -300.0])
-def test_stencil_is_the_derivative_of_the_residual(law: str, omega: float) -> None:
-    section = section_of("axial-groove", 2e5, "free-to-air")
-    motion = Motion((0.2, -0.3), (3.0, -5.0), omega)
-    film = VolumeFilm(section, fitted_grid(section, motion.d, 12, 4), LAWS[law], 30.0)
-    w = np.random.default_rng(1).uniform(-0.9, 1.0, film.grid.shape)
-    balance = CellBalances(section, film.grid, motion)
-    storage = Storage(np.full((film.grid.shape[0], 1), 40.0), np.zeros(film.grid.shape))
-    stencil = balance.residual(film.cells(w), storage)[1]
-    step = 1e-7
-    for i, j in ((film.grid.shape[0] - 1, 1), (6, 0), (5, 3), (8, 2)):
-        change = np.zeros_like(w)
-        change[i, j] = step
-        up, down = (balance.residual(film.cells(w + sign * change), storage)[0] for sign in (1.0, -1.0))
-        slope = (up - down) / (2.0 * step)
-        m, k = w.shape
-        scale = np.abs(slope).max()
-        assert slope[i, j] == pytest.approx(stencil.centre[i, j], abs=1e-5 * scale)
-        after, before = (i + 1) % m, i - 1
-        assert slope[after, j] == pytest.approx(stencil.before[after, j], abs=1e-5 * scale)
-        assert slope[before, j] == pytest.approx(stencil.behind[before, j], abs=1e-5 * scale)
-        if j + 1 < k:
-            assert slope[i, j + 1] == pytest.approx(stencil.below[i, j + 1], abs=1e-5 * scale)
-        if j > 0:
-            assert slope[i, j - 1] == pytest.approx(stencil.above[i, j - 1], abs=1e-5 * scale)
 
 
 @pytest.mark.parametrize("supply", ["none", "axial-groove", "circumferential-groove"])

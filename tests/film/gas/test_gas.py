@@ -6,7 +6,7 @@ from dataclasses import astuple, replace
 import numpy as np
 import pytest
 from differences import differences
-from flows import oil_paths
+from plain_balances import CellBalances, oil_paths
 from volume_films import ROTATION, section_of
 
 import frbcli
@@ -18,13 +18,13 @@ from frbcli.film.cavitation.law import Law, Scales
 from frbcli.film.cavitation.two_phase import Peeken
 from frbcli.film.cells.balance.balances import GridMotion
 from frbcli.film.cells.balance.ends import FLOWS, GAS_IN, GAS_OUT, GAS_RELEASED
-from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     CARRIED_GAS,
     FREE_GAS,
     PRESSURE,
     PRESSURE_SLOPE,
+    SOURCE_SLOPE,
     STATES,
     TURNOVER,
     cell_states,
@@ -71,10 +71,11 @@ def test_compiled_law_with_gas_of_its_own_is_the_plain_one_and_its_slopes_are_th
         cell_states(data.films[0], data.cells[0], numbers, 0.0, at, found)
         return found
 
-    plain, compiled = film.law.cells_with_gas(w, film.scales, carried, turnover), states(w)
-    free = ~film.grid.fixed
-    for layer, name in enumerate(("pressure", "fraction", "source", "pressure_slope", "fraction_slope")):
-        values = getattr(plain, name)
+    own = zip(w.flat, carried.flat, turnover.flat, strict=True)
+    plain = np.array([film.law.cell(at, (*film.law.parameters, *gas), film.scales) for at, *gas in own])
+    compiled, free = states(w), ~film.grid.fixed
+    for layer in range(SOURCE_SLOPE):
+        values = plain[:, layer].reshape(m, k)
         np.testing.assert_allclose(compiled[layer][free], values[free], rtol=1e-12, atol=1e-12 * np.abs(values).max())
     step = 1e-7
     difference = (states(w + step)[PRESSURE] - states(w - step)[PRESSURE]) / (2.0 * step)
@@ -87,7 +88,7 @@ def test_gas_of_a_cell_is_the_implicit_relaxation_to_henrys_law() -> None:
     law, scales = Bubbly(0.1, 0.02, 400.0, 1e-3, 1e-2), Scales(900.0, -60.0, 500.0)
     w = np.linspace(-1.2, 0.8, 200)
     for carried, turnover in ((0.0, 1e3), (0.05, 300.0), (0.1, 1e2), (0.12, 3.0)):
-        state = law.cells_with_gas(w, scales, np.full_like(w, carried), np.full_like(w, turnover))
+        state = law.cells(w, scales, np.full_like(w, carried), np.full_like(w, turnover))
         u = (state.pressure + scales.ambient) / 400.0
         inside = u > 0.0
         settled = np.maximum(0.12 - 0.1 * u, 0.0)

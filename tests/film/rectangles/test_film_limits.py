@@ -21,6 +21,8 @@ from films import (
     force,
     polar,
     rectangular,
+    short_pressure,
+    solve_plain,
     sommerfeld_number,
 )
 from hypothesis import given, settings
@@ -33,9 +35,8 @@ from frbcli.film.gap import Section
 from frbcli.film.grid import Mesh, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.rectangles import short
 from frbcli.film.rectangles.film import direct_force, evaluate, largest_pressure, make_film
-from frbcli.film.rectangles.film_force import solve_plain
 from frbcli.film.rectangles.modal import unit_fields
-from frbcli.film.rectangles.short import short_closed, short_general, short_pressure
+from frbcli.film.rectangles.short import short_closed, short_general
 from frbcli.film.rectangles.table import ring_contraction
 from frbcli.scene.planning.film_choice import DEFAULT_MESH
 

@@ -6,6 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from differences import differences
+from films import plain_pressure, plain_touch, summit_integral
+from plain_balances import pressure_flow, shear_flow
 from scipy.integrate import quad
 
 from frbcli.film.cavitation.conditions import Elrod, Sommerfeld
@@ -16,19 +18,25 @@ from frbcli.film.cells.loads import FilmLoads, loads
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
 from frbcli.film.roughness.asperities import (
+    CUT,
     FLAT,
     LAST,
+    LAST_STRESS,
     Asperities,
     elastic_summits,
     rub,
-    summit_integral,
+    shear_stress,
     summit_pressure,
     touch,
     touching_summits,
 )
-from frbcli.film.roughness.contact import Rubbing, flowing_cube, rough_flow, sheared_gap, stress_factor
-from frbcli.film.roughness.flow_factors import CUT, LAST_STRESS, pressure_flow, shear_flow, shear_stress
-from frbcli.film.roughness.plain import plain_pressure, plain_touch
+from frbcli.film.roughness.contact import (
+    Rubbing,
+    flowing_cube,
+    rough_flow,
+    sheared_gap,
+    stress_factor,
+)
 
 SIGMA = 0.03  # over the clearance
 GAPS = (0.5, 0.9, 1.0, 2.0, 2.99, 3.01, 4.9, 5.1, 8.9, 9.1, 30.0)

@@ -15,10 +15,9 @@ from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balance.balances import GridMotion, balances
 from frbcli.film.cells.balance.ends import FLOWS
-from frbcli.film.cells.balance.grid_motion import seen_by_grid
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, STATES, cell_states, follow_law
 from frbcli.film.cells.block_cyclic import ENTRIES
-from frbcli.film.cells.data import ALL_SIDES, SIDES, volume_films
+from frbcli.film.cells.data import ALL_SIDES, SIDES, seen_by_grid, volume_films
 from frbcli.film.cells.film import Motion, VolumeFilm, fitted_grid, reference_pressure
 from frbcli.film.cells.linearised import steady_force
 from frbcli.film.cells.loads import FilmLoads, loads

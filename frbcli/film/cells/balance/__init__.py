@@ -1,1 +1,1 @@
-"""The oil balances of the cells of one film, compiled; `plain.py` has the same in array notation."""
+"""The oil balances of the cells of one film, compiled; in array notation: tests/helpers/plain_balances.py."""

@@ -27,7 +27,6 @@ from frbcli.film.cells.balance.faces import (
     pressed,
     stored,
 )
-from frbcli.film.cells.balance.grid_motion import GridMotion, add_by_motion, gap_along
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     FRACTION,
@@ -62,6 +61,9 @@ from frbcli.film.cells.data import (
     SIN,
     UNKNOWN,
     WIDTHS,
+    GridMotion,
+    add_by_motion,
+    gap_along,
 )
 from frbcli.film.roughness.contact import flowing_cube, rough_flow, sheared_gap
 

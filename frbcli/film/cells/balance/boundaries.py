@@ -18,7 +18,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.errors import FilmUnsolved
-from frbcli.film.gap import Edge, Section
+from frbcli.film.gap import Section
 from frbcli.film.grid import NO_SEALS
 
 if TYPE_CHECKING:
@@ -52,34 +52,6 @@ def end_slope(distances: Array, seal: float) -> EndSlope:
 def end_slopes(height: Array, seals: tuple[float, float] = NO_SEALS) -> tuple[EndSlope, EndSlope]:
     """The slopes at z = 0 and z = 1 for the places `height` (k,) of the cells' unknowns; seals: see Section."""
     return end_slope(height, seals[0]), end_slope(1.0 - height[::-1], seals[1])
-
-
-def end_outflow(
-    kind: Edge, pressure: Array, conductance: Array, length: Array, groove: float, ambient: float, bathed: Array
-) -> tuple[Array, Array]:
-    """Outflow of the last cells (n,) through an end and its derivative by their pressure.
-
-    pressure: of the cells; conductance: from their middle to the end; length: of their share of the end, each (n,);
-    groove: pressure in a groove at this end; ambient: absolute ambient pressure; bathed: (n,) share of a free end that
-    lies in a bath. Pressures are scaled (1/s), and all
-    but the last are over the ambient pressure.
-    """
-    if kind == "symmetry":
-        return np.zeros_like(pressure), np.zeros_like(pressure)
-    if kind == "oil-bath":
-        return conductance * pressure, conductance
-    if kind == "groove":
-        return conductance * (pressure - groove), conductance
-    out, slope = _free_to_air(pressure, conductance, length, STEEPNESS / ambient)
-    return (1.0 - bathed) * out + bathed * conductance * pressure, (1.0 - bathed) * slope + bathed * conductance
-
-
-def _free_to_air(pressure: Array, conductance: Array, length: Array, steepness: float) -> tuple[Array, Array]:
-    """conductance (p - p_edge) = a exp(b p_edge) length, (4.36) and (4.37), solved by Wright's omega function."""
-    from scipy.special import wrightomega
-
-    omega = wrightomega(np.log(PREFACTOR * steepness * length / conductance) + steepness * pressure)
-    return conductance / steepness * omega, conductance * omega / (1.0 + omega)
 
 
 RESPONSE = 2e-3  # s in which a line of the supply is filled or emptied at most

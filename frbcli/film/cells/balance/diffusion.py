@@ -1,5 +1,4 @@
-"""The artificial diffusion (4.42), (4.43) of the published two-phase form on finite volumes, compiled; in array
-notation: plain_diffusion.py.
+"""The artificial diffusion (4.42), (4.43) of the published two-phase form on finite volumes, compiled.
 
 Equation (4.31) lets the pressure drive the flow (H^3 + c) grad p with c = gamma L beta f, beta = omega/2 H dtheta/dp,
 
@@ -23,8 +22,6 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
-from frbcli.film.cells.balance.grid_motion import GridMotion, add_by_motion, gap_along
-from frbcli.film.cells.balance.plain_diffusion import GAMMA, PECLET
 from frbcli.film.cells.balance.states import FRACTION, FRACTION_SLOPE, PRESSURE, PRESSURE_SLOPE
 from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE
 from frbcli.film.cells.data import (
@@ -46,7 +43,12 @@ from frbcli.film.cells.data import (
     MIDDLES,
     SIN,
     UNKNOWN,
+    GridMotion,
+    add_by_motion,
+    gap_along,
 )
+
+GAMMA, PECLET = 0.5, 3.0  # of (4.42) and (4.43)
 
 
 class Face(NamedTuple):

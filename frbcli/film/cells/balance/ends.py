@@ -12,7 +12,6 @@ from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import wright_omega
 from frbcli.film.cells.balance.boundaries import BEND, PREFACTOR, STEEPNESS
-from frbcli.film.cells.balance.grid_motion import GridMotion, add_by_motion, gap_along, seen_by_grid
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, STATES, rests
 from frbcli.film.cells.block_cyclic import ABOVE, BELOW, CENTRE
 from frbcli.film.cells.data import (
@@ -27,8 +26,12 @@ from frbcli.film.cells.data import (
     LENGTH,
     SIN,
     UNKNOWN,
+    GridMotion,
     VolumeFilms,
+    add_by_motion,
     film_alone,
+    gap_along,
+    seen_by_grid,
 )
 from frbcli.film.cells.film import Motion, VolumeFilm
 from frbcli.film.roughness.contact import flowing_cube
@@ -200,12 +203,11 @@ def side_flow(
 def outflow(film: VolumeFilm, motion: Motion, pressure: Array, known: VolumeFilms | None = None) -> float:
     """Outflow through the open ends of the whole bearing in m^3/s, or of a land where the lands differ. pressure (m,
     k): scaled gauge pressures of the cells; known: the film as arrays, where its openings are filled in part."""
-    section, data = film.section, known or film_alone(film)
+    data = known or film_alone(film)
     states = np.zeros((STATES, *pressure.shape))
     states[PRESSURE] = pressure
-    unit = section.copies * section.radius * section.width * section.clearance
     own = data.films[0], data.ring[0], data.places[0], data.cells[0]
-    return unit * float(side_flow(*own, states, seen_by_grid(motion), opens_far(film)))
+    return film.section.flow_scale * float(side_flow(*own, states, seen_by_grid(motion), opens_far(film)))
 
 
 def opens_far(film: VolumeFilm) -> bool:

@@ -7,7 +7,7 @@ The force on a journal by the pressures of a film, or forces at both ends of its
 
 Those do the same virtual work as the pressures on a journal that moves and tilts: a pressure at the place z along the
 axis pushes with the share z at the far end, and with the rest at the near one. A pressure that is clipped at p_cav
-between the middles of cells: plain_clipped.py.
+between the middles of cells: `clipped_means` of film.py.
 """
 
 from __future__ import annotations
@@ -19,7 +19,6 @@ from numba import njit
 
 from frbcli.arrays import Array
 from frbcli.compiled import AS_KERNELS, Kernel, compiled
-from frbcli.film.cells.balance.plain_clipped import CURVED
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, carried_at
 from frbcli.film.cells.data import (
     BETWEEN_MIDDLES,
@@ -33,6 +32,7 @@ from frbcli.film.cells.data import (
     PUSH_X,
     PUSH_Y,
 )
+from frbcli.film.cells.film import CURVED
 
 _PartCompiler: Any = AS_KERNELS["pipeline_class"]
 
@@ -223,7 +223,7 @@ def _pressed(film: np.record, ring: Array, cells: Array, states: Array, fields: 
 
 @compiled()
 def _pressed_between(film: np.record, ring: Array, cells: Array, states: Array, fields: Array, push: Array) -> None:
-    """_pressed of a pressure that is clipped between the middles of cells, see plain_clipped.py."""
+    """_pressed of a pressure that is clipped between the middles of cells, see `clipped_means`."""
     m, k = states.shape[1], states.shape[2]
     cavity = film.scales.cavitation
     for i in range(m):

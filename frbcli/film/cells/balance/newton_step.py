@@ -9,10 +9,9 @@ from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cells.balance.balances import balances
 from frbcli.film.cells.balance.faces import film_loads
-from frbcli.film.cells.balance.grid_motion import GridMotion, gap_along
 from frbcli.film.cells.balance.states import FRACTION, cell_states, follow_law
 from frbcli.film.cells.block_cyclic import CENTRE, solve_ring_at
-from frbcli.film.cells.data import AREA, COS, GAP, MIDDLES, SIN, UNKNOWN, VolumeFilms
+from frbcli.film.cells.data import AREA, COS, GAP, MIDDLES, SIN, UNKNOWN, GridMotion, VolumeFilms, gap_along
 
 
 @compiled()

@@ -141,19 +141,9 @@ def before_upstream(theta: Array, omega: float) -> Array:
     return np.roll(loose, 1, axis=0) if omega >= 0.0 else np.roll(loose, -2, axis=0)
 
 
-def limited(a: Array, b: Array) -> tuple[Array, Array, Array]:
-    """L and its derivatives by a and b, in array notation."""
-    smooth = a * b > 0.0
-    size = np.where(smooth, a * a + b * b, 1.0)
-    rise = a * b * (a + b)
-    terms = rise, b * (2.0 * a + b) - 2.0 * a * rise / size, a * (a + 2.0 * b) - 2.0 * b * rise / size
-    value, by_a, by_b = (np.where(smooth, 0.5 * one / size, 0.0) for one in terms)
-    return value, by_a, by_b
-
-
 @compiled()
 def limited_at(a: float, b: float) -> tuple[float, float, float]:
-    """L and its derivatives by a and b at one face, see `limited`."""
+    """L and its derivatives by a and b at one face."""
     if not a * b > 0.0:
         return 0.0, 0.0, 0.0
     half = 0.5 / (a * a + b * b)

@@ -40,7 +40,6 @@ from numpy.typing import NDArray
 from frbcli.arrays import Array
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.law import CellState, Law, Scales
-from frbcli.film.cells.balance.grid_motion import seen_by_grid
 from frbcli.film.cells.balance.states import (
     CARRIED_GAS,
     FRACTION,
@@ -51,7 +50,7 @@ from frbcli.film.cells.balance.states import (
     UPWIND,
     cell_states,
 )
-from frbcli.film.cells.data import film_alone
+from frbcli.film.cells.data import film_alone, seen_by_grid
 from frbcli.film.cells.film import Motion, VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.carry import (
     GAS_PAST,

@@ -26,9 +26,21 @@ from frbcli.film.cells.balance.balances import (
     opening_rate,
 )
 from frbcli.film.cells.balance.ends import GAS_IN, GAS_OUT, GAS_RELEASED, falls_to_air, flow_at_end, section_end
-from frbcli.film.cells.balance.grid_motion import GridMotion, gap_along
 from frbcli.film.cells.balance.states import CARRIED_GAS, FRACTION, FREE_GAS, PASSED_ON, PRESSURE, TURNOVER
-from frbcli.film.cells.data import AREA, CLOSED, COS, EDGE, EXCESS, GAP, MIDDLES, SHARE, SIN, UNKNOWN
+from frbcli.film.cells.data import (
+    AREA,
+    CLOSED,
+    COS,
+    EDGE,
+    EXCESS,
+    GAP,
+    MIDDLES,
+    SHARE,
+    SIN,
+    UNKNOWN,
+    GridMotion,
+    gap_along,
+)
 
 # Layers of the paths of the oil: to the next cell and back through the face after each cell around and along, all that
 # leaves a cell, what comes into it from outside (OilPaths of balance.py); M, see there, and the gas that is known to
