@@ -194,22 +194,24 @@ def compilation_shown(
     from frbcli.compiled import counted
     from frbcli.scene.cost import compile_s
 
-    shown_s, about = 0.0, ""
+    shown_s, expected_s, about = 0.0, 0.0, ""
 
     def observe() -> None:
-        nonlocal shown_s, about
+        nonlocal shown_s, expected_s, about
         now = time.monotonic()
         if shown_s == 0.0:
             from frbcli.solve.time_loop import some_are_kept
 
             most = "at most " if some_are_kept() else ""  # of which this machine needs some, maybe
-            about = f"{most}about {compile_s([case, *also], kernels) * slowness():.0f} s"
+            expected_s = compile_s([case, *also], kernels) * slowness()
+            about = f"{most}about {expected_s:.0f} s"
             shown_s = now
             shown.line(f"Compiling the kernels, once: {about} of CPU time.")
         elif compilations.functions and (shown.redraws or now - shown_s > COMPILING_EVERY_s):
             shown_s = now
             line = f"Compiling the kernels, once: {compilations.functions} functions"
-            shown.line(f"{line}, {compilations.spent_s:.0f} s of {about}.")
+            of = f"of {about}" if compilations.spent_s <= expected_s else "of CPU time, longer than expected"
+            shown.line(f"{line}, {compilations.spent_s:.0f} s {of}.")
 
     with counted(observe) as compilations:
         yield

@@ -242,6 +242,16 @@ def test_what_moves_on_the_screen_counts_the_kernels() -> None:
     assert re.fullmatch(rf"Compiling the kernels, once: 1 functions, \d+ s of {about} s\.", shown[1])
 
 
+def test_a_compilation_that_takes_longer_than_announced_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    from numba import njit
+
+    monkeypatch.setattr(progress, "slowness", lambda: 1e-9)
+    shown = list[str]()
+    with compilation_shown(Display(Terminal(), shown.append), load_case("jeffcott-two-phase")):
+        njit(lambda x: x + 1.0)(1.0)
+    assert shown[1].endswith(" s of CPU time, longer than expected.")
+
+
 def test_kernels_that_are_on_disk_make_the_announced_time_the_most(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
