@@ -10,6 +10,7 @@ from commands import Frb
 
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
+from frbcli.cli.main import run
 from frbcli.film.gap import LEAST, graded_ring
 from frbcli.film.kinds.cells import CellFilms
 from frbcli.film.kinds.tilted import TiltedFilms
@@ -111,10 +112,10 @@ def test_every_number_of_grooves_in_every_command(
     monkeypatch.chdir(tmp_path)
     source, given = settings(machine, count)
     words = [word for each in (*given, "accuracy.mesh=[4, 48]") for word in ("--set", each)]
-    run = [word for each in RUN for word in ("--set", each)]
+    short = [word for each in RUN for word in ("--set", each)]
     for command in (["check", source], ["bearing", source, "--no-picture", "--speed", "30 Hz"],
                     ["stability", source, "--no-picture", "--speed", "30 Hz"],
-                    ["runup", source, *run, "--no-picture", "-o", "run.h5"]):  # fmt: skip
+                    ["runup", source, *short, "--no-picture", "-o", "run.h5"]):  # fmt: skip
         code = run([*command, *words])
         said = capsys.readouterr()
         assert code in (0, 3), (command, said.err)
