@@ -15,7 +15,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from operator import attrgetter
 
 import numpy as np
@@ -23,7 +23,7 @@ import numpy as np
 from frbcli.analysis.measured import MEASURED
 from frbcli.analysis.order_tracking import FEWEST as LEAST_REVOLUTIONS
 from frbcli.analysis.order_tracking import REVOLUTIONS, STEPS, OrderTrack, order_track
-from frbcli.analysis.signals import RunLike, course, joined, points, signal_of, times_of
+from frbcli.analysis.signals import RunLike, course, joined, last_change, points, signal_of
 from frbcli.analysis.tacho import MARK
 from frbcli.arrays import Array, Complex, Truths, larger_semi_axis
 from frbcli.case.reading.load import load_case_text
@@ -33,7 +33,7 @@ from frbcli.equilibrium.linearised import coefficients_of
 from frbcli.errors import NotConverged, did_you_mean, input_error
 from frbcli.linear.response import SOUND, Response, forced_motion, response
 from frbcli.results.records import TIME
-from frbcli.results.store import CLEARANCE_STEP, LOSS, Run
+from frbcli.results.store import Run
 from frbcli.scene.changes import case_at
 from frbcli.scene.machine.shaft import BalancingPlane
 from frbcli.scene.machine.turbocharger import shaft_of
@@ -71,8 +71,12 @@ def synchronous_vectors(
 
     Raises InputError for a point that the run does not have, a speed that it does not reach, a change that it ends too
     soon after, and a rotor that turns the other way round."""
-    revolutions, changed_s = _window(run), _last_change(run)
-    tracks = [_from(order_track(run, 1.0, name, revolutions), changed_s) for name in names]
+    changed_s = last_change(run)
+    revolutions = _window(run, changed_s)
+    tracks = [order_track(run, 1.0, name, revolutions).after(changed_s) for name in names]
+    if not len(tracks[0].time_s):
+        problem = f"ends too soon after the loss or the new clearance at {changed_s:.4g} s."
+        raise input_error("balance", "run", "", problem, "Let it go on, or balance a run without it.")
     if not float(tracks[0].speed_Hz.max()) > 0.0:
         raise input_error("balance", "speed", "", "is not above 0: the rotor turns the other way round.", "")
     speeds = _usual_speeds(tracks[0]) if speeds_Hz is None else sorted(set(speeds_Hz))
@@ -83,32 +87,10 @@ def synchronous_vectors(
     return SynchronousVectors(np.array(speeds), tuple(names), turned * values, scatter)
 
 
-def _last_change(run: RunLike) -> float:
-    """When a part was lost or a clearance changed for the last time, s; before the run if nothing changes."""
-    end = float(signal_of(run, TIME)[len(run) - 1 :][0])
-    changes = (time for change in (LOSS, CLEARANCE_STEP) for time, _ in times_of(run, change))
-    return max((time for time in changes if time < end), default=-math.inf)
-
-
-def _from(track: OrderTrack, time_s: float) -> OrderTrack:
-    """The windows of a track that begin after a time in s. Raises InputError if there are none."""
-    if time_s < 0.0:
-        return track
-    half = track.revolutions * STEPS // 2  # a window begins where another one has its middle
-    kept = slice(int(np.searchsorted(track.time_s, time_s)) + half, None)
-    if len(track.time_s[kept]) == 0:
-        problem = f"ends too soon after the loss or the new clearance at {time_s:.4g} s."
-        raise input_error("balance", "run", "", problem, "Let it go on, or balance a run without it.")
-    return replace(
-        track, time_s=track.time_s[kept], speed_Hz=track.speed_Hz[kept], forward=track.forward[kept],
-        backward=track.backward[kept],
-    )  # fmt: skip
-
-
-def _window(run: RunLike) -> int:
+def _window(run: RunLike, changed_s: float) -> int:
     """Revolutions of the windows: fewer than usual in a run that makes few after its last change."""
     time, speed = course(signal_of(run, TIME), signal_of(run, "speed_Hz"))
-    late = time >= _last_change(run)
+    late = time >= changed_s
     time, speed = time[late], speed[late]
     turned = float(np.sum(0.5 * np.abs(speed[1:] + speed[:-1]) * np.diff(time)))
     return max(LEAST_REVOLUTIONS, min(REVOLUTIONS, int(WINDOWS * turned)))
@@ -395,7 +377,7 @@ def _computed(run: Run, vectors: SynchronousVectors, named: tuple[str, ...], dou
     if not run.case_text:
         remedy = 'Give trial runs, as --trial a=trial.csv:"5 g*mm@30deg".'
         raise input_error("balance", "run", str(run.path), "is a measurement, which carries no case.", remedy)
-    case = case_at(load_case_text(run.case_text, name=run.case_name), _last_change(run))
+    case = case_at(load_case_text(run.case_text, name=run.case_name), last_change(run))
     motion, influence = computed_influence(case, planes_named(case, named), vectors.speeds_Hz.tolist(), vectors.points)
     doubts += _nonlinear(motion)
     return influence

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -210,6 +210,15 @@ class OrderTrack:
     speed_Hz: Array
     forward: Complex
     backward: Complex
+
+    def after(self, time_s: float) -> OrderTrack:
+        """The windows that begin after a time in s, all if that is before the run; maybe none."""
+        if time_s < 0.0:
+            return self
+        half = self.revolutions * STEPS // 2  # a window begins where another one has its middle
+        first = int(np.searchsorted(self.time_s, time_s)) + half
+        parts = {name: getattr(self, name)[first:] for name in ("time_s", "speed_Hz", "forward", "backward")}
+        return replace(self, **parts)
 
     def along(self, direction: Direction = "x") -> Complex:
         """Complex amplitude (m,) in m of x = Re(A exp(i order phi)), y = Re(A exp(i order phi)), or the forward one.

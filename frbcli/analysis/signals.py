@@ -5,6 +5,7 @@ Times of measured samples: which rise, which are even but rounded, and signals a
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -18,7 +19,7 @@ from frbcli.arrays import Array, Complex
 from frbcli.errors import did_you_mean, input_error
 from frbcli.results.measured_columns import Columns, wrong_file
 from frbcli.results.records import TIME
-from frbcli.results.store import CRITICAL_SPEED, CRITICAL_SPEEDS
+from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, LOSS
 
 KINDS = ("journal", "disk", "ring", "shell", "support", "housing")  # of points
 END = "_x_m"
@@ -214,6 +215,13 @@ def times_of(run: RunLike, change: str) -> list[tuple[float, str]]:
     of one alone; whether the run has reached them or not."""
     found = ((re.fullmatch(rf"{change}_\d+_(?:(.+)_)?s", name), time) for name, time in run.references.items())
     return sorted((time, name[1] or "") for name, time in found if name is not None)
+
+
+def last_change(run: RunLike) -> float:
+    """When a part was lost or a clearance changed for the last time, s; -inf if nothing changes."""
+    end = float(piece(run, TIME, len(run) - 1, len(run))[0])
+    changes = (time for change in (LOSS, CLEARANCE_STEP) for time, _ in times_of(run, change))
+    return max((time for time in changes if time < end), default=-math.inf)
 
 
 def bearing_clearance(run: RunLike, name: str = "") -> float | None:

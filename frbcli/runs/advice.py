@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from frbcli.analysis.signals import films, joined
+from frbcli.analysis.signals import films, joined, piece
 from frbcli.case.schema import Case
 from frbcli.elements.thrust import COLLAR
 from frbcli.results.records import WHOLE
@@ -83,9 +83,11 @@ def run_end(run: Run) -> RunEnd:
 
 def _grown(run: Run) -> float:
     """The largest displacement in the last sample over the length of a machine without films, 0 with films."""
-    length = run.references.get("length_m")
-    last = (abs(float(run[name][-1])) for name in run.signals if name.endswith(("_x_m", "_y_m")) if len(run))
-    return 0.0 if not length else max(last, default=0.0) / length
+    length, end = run.references.get("length_m"), len(run)
+    if not length or not end:
+        return 0.0
+    places = (name for name in run.signals if name.endswith(("_x_m", "_y_m")))
+    return max((abs(float(piece(run, name, end - 1, end)[0])) for name in places), default=0.0) / length
 
 
 def run_advice(case: Case, end: RunEnd) -> tuple[str, ...]:
